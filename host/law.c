@@ -1,0 +1,61 @@
+#include "law.h"
+
+#include "laws/laws.h"
+#include "property.h"
+
+#include <string.h>
+
+const law *const laws[] = {&law_hertz,        &law_linear,        &law_mindlin, &law_coulomb_linear, &law_elastic_plastic,
+                           &law_constant_torque, &law_local_damping, &law_viscous_damping, NULL};
+
+static const struct {
+    const char *name;
+    bool listed;
+} slots[SLOT_COUNT] = {
+    [SLOT_COMPOSITION] = {"composition", false}, [SLOT_PERIODIC] = {"periodic", false},     [SLOT_MOTION] = {"motion", false},
+    [SLOT_ROTATION] = {"rotation", false},       [SLOT_NORMAL] = {"normal", true},          [SLOT_SLIP] = {"slip", false},
+    [SLOT_TANGENTIAL] = {"tangential", true},    [SLOT_ROLLING] = {"rolling", true},        [SLOT_WALLS] = {"walls", false},
+    [SLOT_BODY] = {"body", true},                [SLOT_ORIENTATION] = {"orientation", false}, [SLOT_INTEGRATOR] = {"integrator", false},
+};
+
+const char *slot_name(slot_id slot)
+{
+    return slots[slot].name;
+}
+
+bool slot_is_listed(slot_id slot)
+{
+    return slots[slot].listed;
+}
+
+slot_id slot_find(const char *name)
+{
+    slot_id slot = 0;
+    while (slot < SLOT_COUNT && strcmp(slots[slot].name, name) != 0)
+        slot++;
+    return slot;
+}
+
+const law *law_find(slot_id slot, const char *name)
+{
+    for (const law *const *l = laws; *l; l++)
+        if ((*l)->slot == slot && strcmp((*l)->name, name) == 0)
+            return *l;
+    return NULL;
+}
+
+const property *const *material_properties(void)
+{
+    static const property *const all[] = {&property_density, &property_youngs_modulus, &property_poissons_ratio,
+                                          &property_conductivity, &property_specific_heat, NULL};
+    return all;
+}
+
+const property *const *interaction_properties(void)
+{
+    static const property *const all[] = {&property_restitution,       &property_normal_damping,   &property_tangential_damping,
+                                          &property_rolling_damping,   &property_friction_static,  &property_friction_dynamic,
+                                          &property_rolling_friction,  &property_normal_stiffness, &property_tangential_stiffness,
+                                          NULL};
+    return all;
+}

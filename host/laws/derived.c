@@ -1,0 +1,74 @@
+/* Slots that the scene as a whole fills, rather than an entry of `effects:`. */
+#include "fields.h"
+#include "laws.h"
+
+const law law_composition_several = {
+    .name = "several",
+    .slot = SLOT_COMPOSITION,
+    .doc = "Several materials or kinds of contact: every grain carries its material, and a contact looks its constants up.",
+    .source = "",
+    .kernel_file = "effect/composition_several.cl",
+    .pair_fields = {&field_material},
+    .particle_fields = {&field_material},
+};
+
+const law law_periodic_box = {
+    .name = "box",
+    .slot = SLOT_PERIODIC,
+    .doc = "Nearest image in the periodic directions.",
+    .source = "",
+    .kernel_file = "effect/periodic_box.cl",
+};
+
+const law law_motion_groups = {
+    .name = "groups",
+    .slot = SLOT_MOTION,
+    .doc = "Grains that are held or moved as prescribed; they count as infinitely heavy.",
+    .source = "",
+    .kernel_file = "effect/motion_groups.cl",
+    .pair_fields = {&field_mover},
+    .particle_fields = {&field_mover},
+};
+
+const law law_rotation_spin = {
+    .name = "spin",
+    .slot = SLOT_ROTATION,
+    .doc = "Spin and torque.",
+    .source = "TM Eq. 1",
+    .kernel_file = "effect/rotation_spin.cl",
+    .pair_fields = {&field_spin, &field_torque},
+    .particle_fields = {&field_spin, &field_torque},
+};
+
+const law law_walls_planes = {
+    .name = "planes",
+    .slot = SLOT_WALLS,
+    .doc = "Infinite planes, at rest or moving.",
+    .source = "TM Remark 1",
+    .kernel_file = "effect/walls_planes.cl",
+};
+
+const law law_walls_finite = {
+    .name = "finite",
+    .slot = SLOT_WALLS,
+    .doc = "Planes, rectangles and discs, at rest or moving; a shared edge gives one contact.",
+    .source = "TM Remark 1",
+    .kernel_file = "effect/walls_finite.cl",
+};
+
+const law law_orientation_quaternion = {
+    .name = "quaternion",
+    .slot = SLOT_ORIENTATION,
+    .doc = "Orientation by unit quaternions.",
+    .source = "replaces TM Eq. 45, which is singular at half a turn",
+    .kernel_file = "effect/orientation_quaternion.cl",
+    .particle_fields = {&field_orientation},
+};
+
+const law law_semi_implicit_euler = {
+    .name = "semi_implicit_euler",
+    .slot = SLOT_INTEGRATOR,
+    .doc = "Velocity first, then position with the new velocity.",
+    .source = "TM sec. 4",
+    .kernel_file = "effect/integrator_semi_implicit_euler.cl",
+};

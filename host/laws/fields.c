@@ -1,0 +1,7 @@
+#include "fields.h"
+
+const field field_spin = {"spin", PER_PARTICLE, FIELD_REAL, 3, FIELD_STATE, "rad/s", "angular velocity"};
+const field field_torque = {"torque", PER_RECORD, FIELD_REAL, 6, FIELD_RESULT, "N m", "torque on the owner (3) and on the other body (3)"};
+const field field_material = {"material", PER_PARTICLE, FIELD_INT, 1, FIELD_STATE, "", "index of the material"};
+const field field_mover = {"mover", PER_PARTICLE, FIELD_INT, 1, FIELD_STATE, "", "prescribed motion that moves the grain; -1: free"};
+const field field_orientation = {"orientation", PER_PARTICLE, FIELD_REAL, 4, FIELD_STATE, "", "unit quaternion w x y z"};

@@ -1,0 +1,58 @@
+#include "property.h"
+
+#include "scene.h"
+
+#include <math.h>
+
+const property property_density = {"density_kg_m3", 0, 1e6, true, NAN, NULL, "mass density of the grains"};
+const property property_youngs_modulus = {"youngs_modulus_pa", 0, 1e15, true, NAN, NULL, "Young's modulus"};
+const property property_poissons_ratio = {"poissons_ratio", -1, 0.5, true, NAN, NULL, "Poisson's ratio"};
+const property property_conductivity = {"conductivity_w_mk", 0, 1e6, false, NAN, NULL, "thermal conductivity"};
+const property property_specific_heat = {"specific_heat_j_kgk", 0, 1e9, true, NAN, NULL, "specific heat"};
+
+const property property_restitution = {"restitution", 0, 1, true, NAN, NULL,
+                                       "coefficient of restitution; gives the normal damping ratio where that is absent"};
+const property property_normal_damping = {"normal_damping_ratio", 0, 100, false, NAN, NULL, "normal damping, ratio to critical"};
+const property property_tangential_damping = {"tangential_damping_ratio", 0, 100, false, NAN, &property_normal_damping,
+                                              "tangential damping, ratio to critical; default: the normal one"};
+const property property_rolling_damping = {"rolling_damping_ratio", 0, 100, false, NAN, &property_normal_damping,
+                                           "rolling damping, ratio to critical; default: the normal one"};
+const property property_friction_static = {"friction_static", 0, 1e3, false, NAN, NULL, "static friction coefficient"};
+const property property_friction_dynamic = {"friction_dynamic", 0, 1e3, false, NAN, &property_friction_static,
+                                            "dynamic friction coefficient; default: the static one"};
+const property property_rolling_friction = {"rolling_friction", 0, 1e3, false, NAN, NULL, "rolling resistance coefficient"};
+const property property_normal_stiffness = {"normal_stiffness_n_m", 0, 1e15, true, NAN, NULL, "stiffness of the linear normal spring"};
+const property property_tangential_stiffness = {"tangential_stiffness_n_m", 0, 1e15, false, NAN, NULL,
+                                                "stiffness of the linear tangential spring"};
+
+double interaction_value(const contact_class *class, const property *property)
+{
+    return scene_interaction(class->scene, class->stage, class->material_a, class->material_b, class->wall, property);
+}
+
+double material_value(const contact_class *class, int material, const property *property)
+{
+    return scene_material(class->scene, material, property);
+}
+
+double normal_damping_ratio(const contact_class *class, double (*invert)(double restitution))
+{
+    double ratio = interaction_value(class, &property_normal_damping);
+    double restitution = interaction_value(class, &property_restitution);
+    if (!isnan(ratio))
+        return ratio;
+    return isnan(restitution) ? 0.0 : invert(restitution);
+}
+
+double effective_modulus(const contact_class *class)
+{
+    double compliance = 0.0;
+    const int body[2] = {class->material_a, class->material_b};
+    for (int k = 0; k < 2; k++) {
+        if (body[k] < 0)
+            continue;
+        double nu = material_value(class, body[k], &property_poissons_ratio);
+        compliance += (1.0 - nu * nu) / material_value(class, body[k], &property_youngs_modulus);
+    }
+    return 1.0 / compliance;
+}

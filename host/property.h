@@ -1,0 +1,18 @@
+/* The numbers that materials and interactions carry, one row each. A law that needs a new one adds its row here or in its own file. */
+#ifndef CLAST_HOST_PROPERTY_H
+#define CLAST_HOST_PROPERTY_H
+#include "law.h"
+
+extern const property property_density, property_youngs_modulus, property_poissons_ratio, property_conductivity, property_specific_heat;
+extern const property property_restitution, property_normal_damping, property_tangential_damping, property_rolling_damping;
+extern const property property_friction_static, property_friction_dynamic, property_rolling_friction;
+extern const property property_normal_stiffness, property_tangential_stiffness;
+
+/* Ratio to critical damping of the normal law: as given, or from the coefficient of restitution through `invert`, or 0. */
+double normal_damping_ratio(const contact_class *class, double (*invert)(double restitution));
+double interaction_value(const contact_class *class, const property *property);
+double material_value(const contact_class *class, int material, const property *property);
+/* 1/E* = sum (1 - nu^2)/E over the bodies that deform (TM Eq. 3, Remark 1). */
+double effective_modulus(const contact_class *class);
+
+#endif

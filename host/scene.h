@@ -1,0 +1,219 @@
+/* A scene as the user wrote it, checked and complete: every number in SI, every name resolved. Plain data; nothing here knows of devices. */
+#ifndef CLAST_HOST_SCENE_H
+#define CLAST_HOST_SCENE_H
+#include "law.h"
+#include "status.h"
+
+#include <stdint.h>
+
+typedef struct place {
+    int line, column; /* counted from 1; 0: not from the file */
+} place;
+
+typedef enum precision { PRECISION_AUTO, PRECISION_DOUBLE, PRECISION_MIXED } precision;
+typedef enum integrator { INTEGRATOR_SEMI_IMPLICIT_EULER, INTEGRATOR_VELOCITY_VERLET } integrator;
+
+typedef struct domain {
+    bool given;
+    double low_m[3], high_m[3];
+    bool periodic[3];
+    bool delete_leaving;
+} domain;
+
+typedef struct effect {
+    const law *law;
+    char *name; /* of a source, else NULL */
+    double option[LAW_OPTIONS_MAX];
+    place at;
+} effect;
+
+typedef struct material {
+    char *name;
+    double *value; /* by index into material_properties(); NAN where absent */
+    place at;
+} material;
+
+typedef struct interaction {
+    bool is_default;
+    char *between[2];
+    double *value; /* by index into interaction_properties(); NAN where absent */
+    place at;
+} interaction;
+
+typedef enum motion_type { MOTION_CONSTANT, MOTION_SINUSOID, MOTION_ROTATION, MOTION_TABLE } motion_type;
+
+/* One term; the terms of a list add up. */
+typedef struct motion {
+    motion_type type;
+    double velocity_m_s[3];                            /* constant */
+    double direction[3], amplitude_m, frequency_hz, phase_rad; /* sinusoid: displacement A sin(2 pi f t + phase) along the unit direction */
+    double point_m[3], axis[3], rate_rad_s;            /* rotation, right-handed about the unit axis */
+    int count;                                         /* table: velocity, linear between times, constant outside */
+    double *time_s;
+    double (*table_velocity_m_s)[3];
+} motion;
+
+typedef struct motion_list {
+    int count;
+    motion *term;
+} motion_list;
+
+typedef enum distribution { RADIUS_NUMBER, RADIUS_UNIFORM, RADIUS_NORMAL, RADIUS_LOGNORMAL, RADIUS_SIEVE } distribution;
+
+typedef struct radius_spec {
+    distribution distribution;
+    double value;                  /* number */
+    double low, high;              /* uniform */
+    double mean, std, truncate_sigmas; /* normal, lognormal (mean and std of the radius itself) */
+    int count;                     /* sieve: passing sizes and the mass fraction between each and the next */
+    double *size_m;                /* count + 1 radii, rising */
+    double *mass_fraction;         /* count, sum 1 */
+} radius_spec;
+
+typedef enum generator { GENERATOR_LIST, GENERATOR_LATTICE, GENERATOR_RANDOM, GENERATOR_CSV, GENERATOR_RESULT } generator;
+typedef enum lattice { LATTICE_SIMPLE_CUBIC, LATTICE_HEXAGONAL, LATTICE_TRIANGULAR } lattice;
+
+typedef struct particle_item {
+    double position_m[3], velocity_m_s[3], spin_rad_s[3], radius_m, temperature_k; /* temperature NAN where absent */
+} particle_item;
+
+typedef struct particle_group {
+    char *name;
+    int material;
+    generator generator;
+    int64_t count;
+    radius_spec radius_m;
+    bool region_given;
+    double region_low_m[3], region_high_m[3];
+    double velocity_m_s[3], spin_rad_s[3], temperature_k;
+    int item_count;
+    particle_item *item;
+    lattice lattice;
+    int64_t counts[3];
+    double spacing_m, origin_m[3];
+    char *path;  /* csv, result: already made relative to the scene file's folder */
+    int64_t frame; /* result: -1 is the last */
+    bool fixed;  /* motion: fixed */
+    motion_list motion; /* prescribed when not fixed and count > 0, else free */
+    place at;
+} particle_group;
+
+typedef enum wall_shape { WALL_PLANE, WALL_BOX, WALL_RECTANGLE, WALL_DISC, WALL_CYLINDER, WALL_CONE } wall_shape;
+
+typedef struct wall {
+    char *name;
+    wall_shape shape;
+    double point_m[3], normal[3];      /* plane (the normal points to the side of the particles), disc uses center_m and normal */
+    double low_m[3], high_m[3];        /* box */
+    bool open[6];                      /* x_low x_high y_low y_high z_low z_high */
+    double corners_m[3][3];            /* rectangle: a corner and its two neighbours */
+    double center_m[3], radius_m;      /* disc */
+    motion_list motion;
+    place at;
+} wall;
+
+/* What a scene stage changes from its start on. */
+typedef struct wall_change {
+    int wall;
+    bool motion_given;
+    motion_list motion;
+    double *value; /* interaction properties between every material and this wall; NAN: unchanged */
+} wall_change;
+
+typedef struct group_change {
+    int group;
+    bool fixed, free;
+    motion_list motion;
+} group_change;
+
+typedef struct scene_stage {
+    char *name;
+    double until_time_s;    /* NAN: not given */
+    int64_t until_steps;    /* -1 */
+    double until_rest;      /* NAN */
+    double until_rest_j;    /* NAN */
+    double step_s;          /* NAN: auto */
+    bool allow_unstable_step;
+    bool gravity_given;
+    double gravity_m_s2[3];
+    int wall_change_count;
+    wall_change *wall_change;
+    int group_change_count;
+    group_change *group_change;
+    int interaction_count;
+    interaction *interaction; /* laid over the scene's: its values replace those of the same pair */
+    bool slot_off[SLOT_COUNT];
+    place at;
+} scene_stage;
+
+typedef struct output_spec {
+    double every_s;              /* NAN: only t = 0 and the ends of the stages */
+    int field_count;
+    char **fields;
+    int observable_count;
+    char **observables;
+    double observables_every_s;  /* NAN: with the frames */
+    bool contacts;
+    double checkpoint_every_s;   /* NAN: none but at an interrupt or a guard */
+} output_spec;
+
+typedef struct table_spec {
+    double skin_m;         /* NAN: auto */
+    int64_t batch_steps;   /* 0: auto */
+} table_spec;
+
+typedef struct guard_spec {
+    int64_t every_steps; /* 0: off */
+    double overlap_max, move_max;
+} guard_spec;
+
+typedef struct scene {
+    char *title;
+    int dimensions;
+    uint64_t seed;
+    double gravity_m_s2[3];
+    precision precision;
+    integrator integrator;
+    domain domain;
+    int effect_count;
+    effect *effect;
+    int material_count;
+    material *material;
+    int interaction_count;
+    interaction *interaction;
+    int group_count;
+    particle_group *group;
+    int wall_count;
+    wall *wall;
+    int stage_count;
+    scene_stage *stage;
+    output_spec output;
+    table_spec table;
+    guard_spec guards;
+    int answer_count;
+    char **answers; /* study */
+    char *path;     /* as given; messages begin with it */
+    char *text;     /* the scene as YAML after every --set, complete enough to run again */
+} scene;
+
+/* Reads, applies `--set path=value` strings in order, fills defaults and checks everything that can be known without a device.
+ * On failure `why` holds "scene.yaml:12:5: ..." and *out is NULL. */
+status scene_read(const char *path, int set_count, char *const *sets, scene **out, failure *why);
+/* The same from text (a checkpoint holds it); `path` is used in messages and to find files beside the scene. */
+status scene_read_text(const char *text, const char *path, int set_count, char *const *sets, scene **out, failure *why);
+void scene_free(scene *scene);
+
+/* Value of an interaction property between material a and either material b or a wall (the other is -1), as stage `stage` (-1: the
+ * scene itself) sees it: stage's overlay, the pair's own entry, `default`, the property's fallbacks. NAN when there is none. */
+double scene_interaction(const scene *scene, int stage, int material_a, int material_b, int wall, const property *property);
+double scene_material(const scene *scene, int material, const property *property);
+/* True when the value above was written in the scene rather than taken from a fallback. */
+bool scene_interaction_given(const scene *scene, int stage, int material_a, int material_b, int wall, const property *property);
+
+/* The law that fills a slot in a stage, or NULL (none twin). */
+const effect *scene_effect(const scene *scene, int stage, slot_id slot);
+
+/* The scene reference page, made from the parameter table and the law descriptors, as Markdown. Caller frees. */
+char *scene_reference(void);
+
+#endif
