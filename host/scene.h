@@ -213,6 +213,9 @@ bool scene_interaction_given(const scene *scene, int stage, int material_a, int 
 /* The law that fills a slot in a stage, or NULL (none twin). */
 const effect *scene_effect(const scene *scene, int stage, slot_id slot);
 
+/* Gravity in a stage (-1: the scene's own): changes stay in force until the next one. */
+void scene_gravity(const scene *scene, int stage, double gravity_m_s2[3]);
+
 /* The scene reference page, made from the parameter table and the law descriptors, as Markdown. Caller frees. */
 char *scene_reference(void);
 

@@ -1,0 +1,224 @@
+/* What a scene says when it is asked: interaction values by pair and stage, laws by slot. */
+#include "scene.h"
+
+#include "property.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int property_index(const property *const *all, const property *wanted)
+{
+    for (int k = 0; all[k]; k++)
+        if (all[k] == wanted)
+            return k;
+    return -1;
+}
+
+/* Two ways of saying one thing, or a value that follows another unless it is given closer: where an entry gives `closer`, entries
+ * further away that give `hidden` do not count. */
+static const struct {
+    const property *hidden, *closer;
+} hides[] = {
+    {&property_restitution, &property_normal_damping},
+    {&property_normal_damping, &property_restitution},
+    {&property_friction_dynamic, &property_friction_static},
+};
+
+static const property *hidden_by(const property *p)
+{
+    for (size_t k = 0; k < sizeof hides / sizeof *hides; k++)
+        if (hides[k].hidden == p)
+            return hides[k].closer;
+    return NULL;
+}
+
+/* One look at the entries that may speak for a contact, from the closest on. */
+typedef struct search {
+    int wanted, closer; /* indices of properties; closer -1: nothing hides it */
+    const char *a, *b;
+    int wall;
+    bool ended;
+    double value;
+} search;
+
+static void look_at(search *find, const double *value)
+{
+    if (find->ended || !value)
+        return;
+    if (!isnan(value[find->wanted])) {
+        find->value = value[find->wanted];
+        find->ended = true;
+    } else if (find->closer >= 0 && !isnan(value[find->closer])) {
+        find->ended = true;
+    }
+}
+
+static bool is_pair(const interaction *entry, const char *a, const char *b)
+{
+    if (entry->is_default)
+        return false;
+    return (!strcmp(entry->between[0], a) && !strcmp(entry->between[1], b)) || (!strcmp(entry->between[0], b) && !strcmp(entry->between[1], a));
+}
+
+static void look_through(search *find, const interaction *entry, int count, bool defaults)
+{
+    for (int k = count - 1; k >= 0; k--)
+        if (defaults ? entry[k].is_default : is_pair(&entry[k], find->a, find->b))
+            look_at(find, entry[k].value);
+}
+
+/* Entries of the pair itself, the latest stage's first, then the defaults. Changes stay in force in the stages after theirs. */
+static void look_everywhere(search *find, const scene *s, int stage)
+{
+    for (int t = stage; t >= 0; t--) {
+        const scene_stage *change = &s->stage[t];
+        look_through(find, change->interaction, change->interaction_count, false);
+        for (int k = change->wall_change_count - 1; k >= 0 && find->wall >= 0; k--)
+            if (change->wall_change[k].wall == find->wall)
+                look_at(find, change->wall_change[k].value);
+    }
+    look_through(find, s->interaction, s->interaction_count, false);
+    for (int t = stage; t >= 0; t--)
+        look_through(find, s->stage[t].interaction, s->stage[t].interaction_count, true);
+    look_through(find, s->interaction, s->interaction_count, true);
+}
+
+static double written_value(const scene *s, int stage, int material_a, int material_b, int w, const property *wanted)
+{
+    const int index = property_index(interaction_properties(), wanted);
+    if (index < 0)
+        return NAN;
+    search find = {.wanted = index, .closer = -1, .wall = w, .value = NAN};
+    if (hidden_by(wanted))
+        find.closer = property_index(interaction_properties(), hidden_by(wanted));
+    find.a = s->material[material_a].name;
+    find.b = w >= 0 ? s->wall[w].name : s->material[material_b].name;
+    look_everywhere(&find, s, stage < s->stage_count ? stage : s->stage_count - 1);
+    return find.value;
+}
+
+double scene_interaction(const scene *s, int stage, int material_a, int material_b, int w, const property *wanted)
+{
+    double value = NAN;
+    double fallback = wanted->fallback;
+    for (const property *p = wanted; p && isnan(value); p = p->fallback_property)
+        value = written_value(s, stage, material_a, material_b, w, p);
+    return isnan(value) ? fallback : value;
+}
+
+bool scene_interaction_given(const scene *s, int stage, int material_a, int material_b, int w, const property *wanted)
+{
+    return !isnan(written_value(s, stage, material_a, material_b, w, wanted));
+}
+
+double scene_material(const scene *s, int m, const property *wanted)
+{
+    for (const property *p = wanted; p; p = p->fallback_property) {
+        int index = property_index(material_properties(), p);
+        if (index >= 0 && !isnan(s->material[m].value[index]))
+            return s->material[m].value[index];
+    }
+    return wanted->fallback;
+}
+
+const effect *scene_effect(const scene *s, int stage, slot_id slot)
+{
+    if (stage >= 0 && s->stage[stage].slot_off[slot])
+        return NULL;
+    for (int k = 0; k < s->effect_count; k++)
+        if (s->effect[k].law && s->effect[k].law->slot == slot)
+            return &s->effect[k];
+    return NULL;
+}
+
+void scene_gravity(const scene *s, int stage, double gravity_m_s2[3])
+{
+    memcpy(gravity_m_s2, s->gravity_m_s2, 3 * sizeof(double));
+    for (int t = 0; t <= stage; t++)
+        if (s->stage[t].gravity_given)
+            memcpy(gravity_m_s2, s->stage[t].gravity_m_s2, 3 * sizeof(double));
+}
+
+static void free_motion(motion_list *list)
+{
+    for (int k = 0; k < list->count; k++) {
+        free(list->term[k].time_s);
+        free(list->term[k].table_velocity_m_s);
+    }
+    free(list->term);
+}
+
+static void free_interactions(interaction *entry, int count)
+{
+    for (int k = 0; k < count; k++) {
+        free(entry[k].between[0]);
+        free(entry[k].between[1]);
+        free(entry[k].value);
+    }
+    free(entry);
+}
+
+static void free_words(char **word, int count)
+{
+    for (int k = 0; k < count; k++)
+        free(word[k]);
+    free(word);
+}
+
+static void free_group(particle_group *group)
+{
+    free(group->name);
+    free(group->radius_m.size_m);
+    free(group->radius_m.mass_fraction);
+    free(group->item);
+    free(group->path);
+    free_motion(&group->motion);
+}
+
+static void free_stage(scene_stage *stage)
+{
+    free(stage->name);
+    for (int k = 0; k < stage->wall_change_count; k++) {
+        free_motion(&stage->wall_change[k].motion);
+        free(stage->wall_change[k].value);
+    }
+    free(stage->wall_change);
+    for (int k = 0; k < stage->group_change_count; k++)
+        free_motion(&stage->group_change[k].motion);
+    free(stage->group_change);
+    free_interactions(stage->interaction, stage->interaction_count);
+}
+
+void scene_free(scene *s)
+{
+    if (!s)
+        return;
+    for (int k = 0; k < s->effect_count; k++)
+        free(s->effect[k].name);
+    for (int k = 0; k < s->material_count; k++) {
+        free(s->material[k].name);
+        free(s->material[k].value);
+    }
+    for (int k = 0; k < s->group_count; k++)
+        free_group(&s->group[k]);
+    for (int k = 0; k < s->wall_count; k++) {
+        free(s->wall[k].name);
+        free_motion(&s->wall[k].motion);
+    }
+    for (int k = 0; k < s->stage_count; k++)
+        free_stage(&s->stage[k]);
+    free_interactions(s->interaction, s->interaction_count);
+    free(s->effect);
+    free(s->material);
+    free(s->group);
+    free(s->wall);
+    free(s->stage);
+    free_words(s->output.fields, s->output.field_count);
+    free_words(s->output.observables, s->output.observable_count);
+    free_words(s->answers, s->answer_count);
+    free(s->title);
+    free(s->path);
+    free(s->text);
+    free(s);
+}

@@ -1,0 +1,8 @@
+/* Checks over the scene as a whole, after every key has been read. */
+#ifndef CLAST_HOST_SCENE_CHECK_H
+#define CLAST_HOST_SCENE_CHECK_H
+#include "parameter.h"
+
+status scene_check(reader *r);
+
+#endif

@@ -1,0 +1,325 @@
+#include "scene_table.h"
+
+#include <math.h>
+
+/* Shorthands for the rows below. */
+#define AT(type, member) .offset = offsetof(type, member)
+#define POSITIVE .low = 0, .high = INFINITY, .open_low = true
+#define NOT_NEGATIVE .low = 0, .high = INFINITY
+
+static const parameter domain_rows[] = {
+    {.key = "low_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, AT(domain, low_m), .doc = "lower corner"},
+    {.key = "high_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, AT(domain, high_m), .doc = "upper corner"},
+    {.key = "periodic", .type = PARAMETER_FLAGS, .choices = "x|y|z", AT(domain, periodic), .shown = "[]",
+     .doc = "directions in which the domain repeats"},
+    {.key = "leaving", .type = PARAMETER_CHOICE, .choices = "stop|delete", .fallback = "stop", AT(domain, delete_leaving), .as_flag = true,
+     .doc = "what happens when a particle leaves the domain: the run stops, or the particle is deleted and counted"},
+    {0},
+};
+const section domain_section = {.name = "domain", .doc = "The box that holds the particles. Without it space is unbounded.", .row = domain_rows,
+                                .finish = finish_domain};
+
+static const parameter effect_rows[] = {
+    {.key = "slot", .type = PARAMETER_TEXT, .required = true, .doc = "the slot that the law fills"},
+    {.key = "law", .type = PARAMETER_TEXT, .required = true, .doc = "the law"},
+    {.key = "name", .type = PARAMETER_NAME, .doc = "a name, where a slot takes several entries", AT(effect, name)},
+    {0},
+};
+const section effect_section = {.name = "effect",
+                                .doc = "The live laws, one entry a slot. Nothing else is simulated, and what is not listed costs nothing. Further "
+                                       "keys are the law's options, below.",
+                                .row = effect_rows, .placed = true, .at = offsetof(effect, at)};
+
+static const parameter material_rows[] = {
+    {.key = "name", .type = PARAMETER_NAME, .required = true, AT(material, name), .doc = "name of the material"},
+    {0},
+};
+const section material_section = {.name = "material", .doc = "What the particles are made of. A property is needed where a live law reads it.",
+                                  .row = material_rows, .properties = material_properties, .values = offsetof(material, value), .placed = true,
+                                  .at = offsetof(material, at)};
+
+static const parameter interaction_rows[] = {
+    {.key = "between", .type = PARAMETER_OTHER, .read = read_between, .required = true, .form = "`default`, or [name, name]",
+     .doc = "`default`, or a pair of materials, or a material and a wall"},
+    {0},
+};
+const section interaction_section = {.name = "interaction",
+                                     .doc = "What two bodies in contact share, by pair of materials or of a material and a wall. The pair's own "
+                                            "entry counts first, then `default`, key by key. `restitution` and `normal_damping_ratio` say the "
+                                            "same thing in two ways: of the two the closer entry's counts. A pair's own `friction_static` "
+                                            "also hides `friction_dynamic` of `default`.",
+                                     .row = interaction_rows, .properties = interaction_properties, .values = offsetof(interaction, value),
+                                     .placed = true, .at = offsetof(interaction, at), .finish = finish_interaction};
+
+static const parameter region_rows[] = {
+    {.key = "low_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, AT(particle_group, region_low_m), .doc = "lower corner"},
+    {.key = "high_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, AT(particle_group, region_high_m), .doc = "upper corner"},
+    {0},
+};
+const section region_section = {.name = "region", .doc = "A box that holds the spheres of a group as a whole.", .row = region_rows,
+                                .finish = finish_region};
+
+static const parameter item_rows[] = {
+    {.key = "position_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, AT(particle_item, position_m), .doc = "centre"},
+    {.key = "radius_m", .type = PARAMETER_NUMBER, .unit = "m", .required = true, POSITIVE, AT(particle_item, radius_m), .doc = "radius"},
+    {.key = "velocity_m_s", .type = PARAMETER_VECTOR, .unit = "m/s", .keep = true, .shown = "the group's", AT(particle_item, velocity_m_s),
+     .doc = "velocity"},
+    {.key = "spin_rad_s", .type = PARAMETER_VECTOR, .unit = "rad/s", .keep = true, .shown = "the group's", AT(particle_item, spin_rad_s),
+     .doc = "angular velocity"},
+    {.key = "temperature_k", .type = PARAMETER_NUMBER, .unit = "K", NOT_NEGATIVE, .keep = true, .shown = "the group's",
+     AT(particle_item, temperature_k), .doc = "temperature"},
+    {0},
+};
+const section item_section = {.name = "particle item", .doc = "One particle of a list.", .row = item_rows};
+
+static const parameter radius_rows[] = {
+    {.key = "distribution", .type = PARAMETER_CHOICE, .choices = "uniform|normal|lognormal|sieve", .required = true, .first = RADIUS_UNIFORM,
+     AT(radius_spec, distribution), .doc = "how radii scatter"},
+    {.key = "low", .type = PARAMETER_NUMBER, .unit = "m", .required = true, POSITIVE, .only = "uniform", AT(radius_spec, low),
+     .doc = "smallest radius"},
+    {.key = "high", .type = PARAMETER_NUMBER, .unit = "m", .required = true, POSITIVE, .only = "uniform", AT(radius_spec, high),
+     .doc = "largest radius"},
+    {.key = "mean", .type = PARAMETER_NUMBER, .unit = "m", .required = true, POSITIVE, .only = "normal|lognormal", AT(radius_spec, mean),
+     .doc = "mean of the radius, before truncation"},
+    {.key = "std", .type = PARAMETER_NUMBER, .unit = "m", .required = true, NOT_NEGATIVE, .only = "normal|lognormal", AT(radius_spec, std),
+     .doc = "standard deviation of the radius, before truncation"},
+    {.key = "truncate_sigmas", .type = PARAMETER_NUMBER, .fallback = "3", .low = 0, .high = 10, .open_low = true, .only = "normal|lognormal",
+     AT(radius_spec, truncate_sigmas), .doc = "radii (lognormal: their logarithms) further from the mean than this many deviations are drawn again"},
+    {.key = "mass_fraction", .type = PARAMETER_NUMBERS, .required = true, .low = 0, .high = 1, .only = "sieve", AT(radius_spec, mass_fraction),
+     .count = offsetof(radius_spec, count), .doc = "mass between each size and the next as a fraction of the whole; the sum is 1"},
+    {.key = "size_m", .type = PARAMETER_OTHER, .read = read_sieve_sizes, .unit = "m", .required = true, POSITIVE, .only = "sieve",
+     AT(radius_spec, size_m), .form = "list of numbers", .doc = "radii that bound the fractions, rising, one more than there are fractions"},
+    {0},
+};
+const section radius_section = {.name = "radius distribution", .doc = "A number gives every particle of the group the same radius.",
+                                .selector = "distribution", .row = radius_rows, .finish = finish_radius};
+
+static const parameter group_rows[] = {
+    {.key = "name", .type = PARAMETER_NAME, .required = true, AT(particle_group, name), .doc = "name of the group"},
+    {.key = "material", .type = PARAMETER_OTHER, .read = read_material, .required = true, AT(particle_group, material),
+     .form = "name of a material", .doc = "what the particles are made of"},
+    {.key = "generator", .type = PARAMETER_CHOICE, .choices = "list|lattice|random|csv|result", .required = true,
+     AT(particle_group, generator),
+     .doc = "where particles come from: written out, on a lattice, at random without overlap, from a table, or from a frame of an earlier run"},
+    {.key = "velocity_m_s", .type = PARAMETER_VECTOR, .unit = "m/s", .fallback = "[0, 0, 0]", AT(particle_group, velocity_m_s),
+     .doc = "velocity at the start, where the generator gives none"},
+    {.key = "spin_rad_s", .type = PARAMETER_VECTOR, .unit = "rad/s", .fallback = "[0, 0, 0]", AT(particle_group, spin_rad_s),
+     .doc = "angular velocity at the start, where the generator gives none"},
+    {.key = "temperature_k", .type = PARAMETER_NUMBER, .unit = "K", NOT_NEGATIVE, AT(particle_group, temperature_k),
+     .doc = "temperature at the start, where the generator gives none"},
+    {.key = "items", .type = PARAMETER_OTHER, .read = read_items, .required = true, .only = "list", .form = "list of particle items",
+     .doc = "the particles"},
+    {.key = "count", .type = PARAMETER_INTEGER, .required = true, .low = 0, .high = 2e9, .only = "random", AT(particle_group, count),
+     .doc = "number of particles"},
+    {.key = "radius_m", .type = PARAMETER_OTHER, .read = read_radius, .required = true, .unit = "m", POSITIVE, .only = "random|lattice",
+     AT(particle_group, radius_m), .form = "number or radius distribution", .doc = "radius"},
+    {.key = "radius_m", .type = PARAMETER_OTHER, .read = read_radius, .unit = "m", POSITIVE, .only = "csv", AT(particle_group, radius_m),
+     .form = "number or radius distribution", .doc = "radius, where the table has no such column"},
+    {.key = "region", .type = PARAMETER_SECTION, .section = &region_section, .required = true, .only = "random",
+     .given = offsetof(particle_group, region_given), .doc = "where the particles lie"},
+    {.key = "lattice", .type = PARAMETER_CHOICE, .choices = "simple_cubic|hexagonal|triangular", .fallback = "simple_cubic", .only = "lattice",
+     AT(particle_group, lattice),
+     .doc = "simple cubic; hexagonal close packing in layers along z; or triangular layers in the x-z plane, repeated along y (with "
+            "`dimensions: 2` in the x-y plane)"},
+    {.key = "counts", .type = PARAMETER_COUNTS, .required = true, .low = 1, .high = 1e9, .only = "lattice", AT(particle_group, counts),
+     .form = "three whole numbers", .doc = "particles along a row, number of rows, number of layers; triangular: along x, along y, along z"},
+    {.key = "spacing_m", .type = PARAMETER_NUMBER, .unit = "m", .required = true, POSITIVE, .only = "lattice", AT(particle_group, spacing_m),
+     .doc = "distance between neighbours"},
+    {.key = "origin_m", .type = PARAMETER_VECTOR, .unit = "m", .fallback = "[0, 0, 0]", .only = "lattice", AT(particle_group, origin_m),
+     .doc = "centre of the first particle"},
+    {.key = "file", .type = PARAMETER_OTHER, .read = read_file, .required = true, .only = "csv|result", AT(particle_group, path),
+     .form = "path", .doc = "the file, relative to the scene's folder"},
+    {.key = "frame", .type = PARAMETER_INTEGER, .fallback = "-1", .low = -1, .high = 1e15, .only = "result", AT(particle_group, frame),
+     .doc = "frame of the results file, counted from 0; -1 is the last"},
+    {.key = "motion", .type = PARAMETER_OTHER, .read = read_group_motion, .shown = "free", AT(particle_group, motion),
+     .form = "`free`, `fixed`, or list of motion terms", .doc = "free; held where it is; or moved as prescribed, the terms adding up"},
+    {0},
+};
+const section group_section = {.name = "particle group", .doc = "Groups of particles.", .selector = "generator", .row = group_rows, .placed = true,
+                               .at = offsetof(particle_group, at)};
+
+static const parameter motion_rows[] = {
+    {.key = "type", .type = PARAMETER_CHOICE, .choices = "constant|sinusoid|rotation|table", .required = true, AT(motion, type),
+     .doc = "kind of motion"},
+    {.key = "velocity_m_s", .type = PARAMETER_VECTOR, .unit = "m/s", .required = true, .only = "constant", AT(motion, velocity_m_s),
+     .doc = "velocity"},
+    {.key = "direction", .type = PARAMETER_DIRECTION, .required = true, .only = "sinusoid", AT(motion, direction), .doc = "direction"},
+    {.key = "amplitude_m", .type = PARAMETER_NUMBER, .unit = "m", .required = true, NOT_NEGATIVE, .only = "sinusoid", AT(motion, amplitude_m),
+     .doc = "amplitude A of the displacement A sin(2 pi f t + phase)"},
+    {.key = "frequency_hz", .type = PARAMETER_NUMBER, .unit = "Hz", .required = true, NOT_NEGATIVE, .only = "sinusoid", AT(motion, frequency_hz),
+     .doc = "frequency f"},
+    {.key = "phase_rad", .type = PARAMETER_NUMBER, .unit = "rad", .fallback = "0", .only = "sinusoid", AT(motion, phase_rad), .doc = "phase"},
+    {.key = "point_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, .only = "rotation", AT(motion, point_m),
+     .doc = "a point on the axis"},
+    {.key = "axis", .type = PARAMETER_DIRECTION, .required = true, .only = "rotation", AT(motion, axis), .doc = "direction of the axis"},
+    {.key = "rate_rad_s", .type = PARAMETER_NUMBER, .unit = "rad/s", .required = true, .only = "rotation", AT(motion, rate_rad_s),
+     .doc = "angular velocity, right-handed about the axis"},
+    {.key = "time_s", .type = PARAMETER_NUMBERS, .unit = "s", .required = true, .only = "table", AT(motion, time_s),
+     .count = offsetof(motion, count), .doc = "times, rising"},
+    {.key = "velocity_m_s", .type = PARAMETER_OTHER, .read = read_table_velocity, .unit = "m/s", .required = true, .only = "table",
+     .form = "list of [x, y, z]", .doc = "velocity at those times, linear between them and constant outside"},
+    {0},
+};
+const section motion_section = {.name = "motion term", .doc = "One term of a prescribed motion; the terms of a list add up.", .selector = "type",
+                                .row = motion_rows, .finish = finish_motion};
+
+static const parameter wall_rows[] = {
+    {.key = "name", .type = PARAMETER_NAME, .required = true, AT(wall, name), .doc = "name of the wall, used like a material's in `between`"},
+    {.key = "shape", .type = PARAMETER_CHOICE, .choices = "plane|box|rectangle|disc", .later = "cylinder|cone", .required = true,
+     AT(wall, shape), .doc = "shape of the wall"},
+    {.key = "point_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, .only = "plane", AT(wall, point_m), .doc = "a point of the plane"},
+    {.key = "normal", .type = PARAMETER_DIRECTION, .required = true, .only = "plane|disc", AT(wall, normal),
+     .doc = "normal; a plane's points to the side of the particles"},
+    {.key = "low_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, .only = "box", AT(wall, low_m), .doc = "lower corner"},
+    {.key = "high_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, .only = "box", AT(wall, high_m), .doc = "upper corner"},
+    {.key = "open", .type = PARAMETER_FLAGS, .choices = "x_low|x_high|y_low|y_high|z_low|z_high", .only = "box", AT(wall, open), .shown = "[]",
+     .doc = "faces left out; with `dimensions: 2` those along z are always left out"},
+    {.key = "corners_m", .type = PARAMETER_OTHER, .read = read_corners, .unit = "m", .required = true, .only = "rectangle",
+     .form = "three [x, y, z]", .doc = "a corner and its two neighbours; the sides must be perpendicular"},
+    {.key = "center_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, .only = "disc", AT(wall, center_m), .doc = "centre"},
+    {.key = "radius_m", .type = PARAMETER_NUMBER, .unit = "m", .required = true, POSITIVE, .only = "disc", AT(wall, radius_m), .doc = "radius"},
+    {.key = "motion", .type = PARAMETER_OTHER, .read = read_motion, .shown = "[]", AT(wall, motion), .form = "list of motion terms",
+     .doc = "prescribed motion; the terms add up"},
+    {.key = "servo", .type = PARAMETER_LATER, .doc = "a wall that moves to keep a force"},
+    {0},
+};
+const section wall_section = {.name = "wall", .doc = "Rigid walls. They have no material: interactions name the wall.", .selector = "shape",
+                              .row = wall_rows, .placed = true, .at = offsetof(wall, at), .finish = finish_wall};
+
+static const parameter until_rows[] = {
+    {.key = "time_s", .type = PARAMETER_NUMBER, .unit = "s", POSITIVE, AT(scene_stage, until_time_s), .doc = "duration of the stage"},
+    {.key = "steps", .type = PARAMETER_INTEGER, .low = 1, .high = 1e15, .absent = -1, AT(scene_stage, until_steps), .doc = "number of steps"},
+    {.key = "rest", .type = PARAMETER_NUMBER, POSITIVE, AT(scene_stage, until_rest),
+     .doc = "translational kinetic energy below this fraction of the sum of m g r at 100 successive checks, 100 steps apart"},
+    {.key = "rest_j", .type = PARAMETER_NUMBER, .unit = "J", POSITIVE, AT(scene_stage, until_rest_j),
+     .doc = "the same with a limit in joules, for scenes without gravity"},
+    {.key = "steady_k_s", .type = PARAMETER_LATER, .doc = "an end by temperature rate, which needs heat"},
+    {0},
+};
+const section until_section = {.name = "stage end (`until`)", .doc = "When a stage ends; with several keys the first one met ends it.", .row = until_rows,
+                               .finish = finish_until};
+
+static const parameter wall_change_rows[] = {
+    {.key = "name", .type = PARAMETER_OTHER, .read = read_wall, .required = true, AT(wall_change, wall), .form = "name of a wall",
+     .doc = "the wall that changes"},
+    {.key = "motion", .type = PARAMETER_OTHER, .read = read_motion, AT(wall_change, motion), .given = offsetof(wall_change, motion_given),
+     .shown = "unchanged", .form = "list of motion terms", .doc = "its motion from now on; `[]` stops it"},
+    {0},
+};
+const section wall_change_section = {.name = "wall change",
+                                     .doc = "Interaction properties given here hold between this wall and every material.",
+                                     .row = wall_change_rows, .properties = interaction_properties, .values = offsetof(wall_change, value)};
+
+static const parameter group_change_rows[] = {
+    {.key = "name", .type = PARAMETER_OTHER, .read = read_group, .required = true, AT(group_change, group), .form = "name of a particle group",
+     .doc = "the group that changes"},
+    {.key = "motion", .type = PARAMETER_OTHER, .read = read_changed_motion, .required = true, AT(group_change, motion),
+     .form = "`free`, `fixed`, or list of motion terms", .doc = "its motion from now on"},
+    {0},
+};
+const section group_change_section = {.name = "particle group change", .doc = "A change of a group's motion.", .row = group_change_rows};
+
+static const parameter change_rows[] = {
+    {.key = "gravity_m_s2", .type = PARAMETER_VECTOR, .unit = "m/s^2", .shown = "unchanged", AT(scene_stage, gravity_m_s2),
+     .given = offsetof(scene_stage, gravity_given), .doc = "gravity"},
+    {.key = "walls", .type = PARAMETER_LIST, .section = &wall_change_section, .size = sizeof(wall_change), AT(scene_stage, wall_change),
+     .count = offsetof(scene_stage, wall_change_count), .doc = "walls whose motion or interactions change"},
+    {.key = "particles", .type = PARAMETER_LIST, .section = &group_change_section, .size = sizeof(group_change), AT(scene_stage, group_change),
+     .count = offsetof(scene_stage, group_change_count), .doc = "particle groups whose motion changes"},
+    {.key = "interactions", .type = PARAMETER_LIST, .section = &interaction_section, .size = sizeof(interaction), AT(scene_stage, interaction),
+     .count = offsetof(scene_stage, interaction_count), .doc = "interactions laid over the scene's, pair by pair and key by key"},
+    {0},
+};
+const section change_section = {.name = "stage change", .doc = "What changes at the start of a stage; it stays so in later stages.",
+                                .row = change_rows};
+
+static const parameter stage_rows[] = {
+    {.key = "name", .type = PARAMETER_NAME, .shown = "stage1, stage2, ...", AT(scene_stage, name), .doc = "name of the stage"},
+    {.key = "until", .type = PARAMETER_SECTION, .section = &until_section, .required = true, .doc = "when the stage ends: `time_s`, `steps`, `rest` or `rest_j`"},
+    {.key = "step_s", .type = PARAMETER_NUMBER, .unit = "s", POSITIVE, .word = "auto", .fallback = "auto", AT(scene_stage, step_s),
+     .doc = "time step"},
+    {.key = "allow_unstable_step", .type = PARAMETER_FLAG, .fallback = "false", AT(scene_stage, allow_unstable_step),
+     .doc = "run even with a step beyond the stability limit"},
+    {.key = "change", .type = PARAMETER_SECTION, .section = &change_section, .doc = "what changes at the start of the stage"},
+    {.key = "effects_off", .type = PARAMETER_OTHER, .read = read_effects_off, .shown = "[]", .form = "list of slots",
+     .doc = "slots whose law is switched off during this stage"},
+    {0},
+};
+const section stage_section = {.name = "stage", .doc = "What is run, one stage after the other; time runs on.", .row = stage_rows, .placed = true,
+                               .at = offsetof(scene_stage, at)};
+
+static const parameter output_rows[] = {
+    {.key = "every_s", .type = PARAMETER_NUMBER, .unit = "s", POSITIVE, .shown = "start and stage ends only", AT(output_spec, every_s),
+     .doc = "time between frames"},
+    {.key = "fields", .type = PARAMETER_WORDS, AT(output_spec, fields), .count = offsetof(output_spec, field_count),
+     .shown = "[position, velocity], and spin where a tangential or rolling law is live", .doc = "per-particle fields of a frame"},
+    {.key = "observables", .type = PARAMETER_WORDS, AT(output_spec, observables), .count = offsetof(output_spec, observable_count),
+     .shown = "[kinetic_energy]", .doc = "numbers of the scene as a whole; each wall's force and torque are always written"},
+    {.key = "observables_every_s", .type = PARAMETER_NUMBER, .unit = "s", POSITIVE, .shown = "with the frames",
+     AT(output_spec, observables_every_s), .doc = "time between observations"},
+    {.key = "contacts", .type = PARAMETER_FLAG, .fallback = "false", AT(output_spec, contacts), .doc = "write the contacts with every frame"},
+    {.key = "checkpoint_every_s", .type = PARAMETER_NUMBER, .unit = "s", POSITIVE, .shown = "only when interrupted or stopped by a guard",
+     AT(output_spec, checkpoint_every_s), .doc = "time between checkpoints"},
+    {0},
+};
+const section output_section = {.name = "output", .doc = "What the results file holds.", .row = output_rows};
+
+static const parameter table_rows[] = {
+    {.key = "skin_m", .type = PARAMETER_NUMBER, .unit = "m", POSITIVE, .word = "auto", .fallback = "auto", AT(table_spec, skin_m),
+     .doc = "pairs up to this far apart are listed, so that the list lasts for many steps"},
+    {.key = "batch_steps", .type = PARAMETER_INTEGER, .low = 1, .high = 1e9, .word = "auto", .fallback = "auto", AT(table_spec, batch_steps),
+     .doc = "steps enqueued before the host looks"},
+    {0},
+};
+const section table_section = {.name = "contact table", .doc = "How contacts are searched. Changes speed, not results.", .row = table_rows};
+
+static const parameter guard_rows[] = {
+    {.key = "every_steps", .type = PARAMETER_INTEGER, .fallback = "100", .low = 0, .high = 1e9, AT(guard_spec, every_steps),
+     .doc = "steps between checks; 0 switches the guards off"},
+    {.key = "overlap_max", .type = PARAMETER_NUMBER, .fallback = "0.3", .low = 0, .high = 2, .open_low = true, AT(guard_spec, overlap_max),
+     .doc = "largest overlap, as a fraction of the smaller radius"},
+    {.key = "move_max", .type = PARAMETER_NUMBER, .fallback = "0.5", .low = 0, .high = 1e6, .open_low = true, AT(guard_spec, move_max),
+     .doc = "largest move in one step, as a fraction of the skin"},
+    {0},
+};
+const section guard_section = {.name = "guards", .doc = "Checks that stop a run that goes wrong.", .row = guard_rows};
+
+static const parameter study_rows[] = {
+    {.key = "answers", .type = PARAMETER_WORDS, AT(scene, answers), .count = offsetof(scene, answer_count), .shown = "[]",
+     .doc = "what a study compares"},
+    {0},
+};
+const section study_section = {.name = "study", .doc = "What `clast study` looks at.", .row = study_rows};
+
+static const parameter scene_rows[] = {
+    {.key = "title", .type = PARAMETER_TEXT, .fallback = "", AT(scene, title), .doc = "title of the scene"},
+    {.key = "dimensions", .type = PARAMETER_CHOICE, .choices = "2|3", .fallback = "3", .first = 2, AT(scene, dimensions),
+     .doc = "2: motion in x and y (y is up), spin about z"},
+    {.key = "seed", .type = PARAMETER_INTEGER, .fallback = "1", .low = 0, .high = 9007199254740992.0, AT(scene, seed),
+     .doc = "everything random follows from it"},
+    {.key = "gravity_m_s2", .type = PARAMETER_VECTOR, .unit = "m/s^2", .fallback = "[0, 0, 0]", AT(scene, gravity_m_s2), .doc = "gravity"},
+    {.key = "precision", .type = PARAMETER_CHOICE, .choices = "auto|double", .later = "mixed", .fallback = "auto", AT(scene, precision),
+     .doc = "arithmetic; `auto` is `double`"},
+    {.key = "integrator", .type = PARAMETER_CHOICE, .choices = "semi_implicit_euler", .later = "velocity_verlet",
+     .fallback = "semi_implicit_euler", AT(scene, integrator), .doc = "how time advances"},
+    {.key = "domain", .type = PARAMETER_SECTION, .section = &domain_section, AT(scene, domain), .given = offsetof(scene, domain.given),
+     .shown = "unbounded", .doc = "the box that holds the particles"},
+    {.key = "effects", .type = PARAMETER_OTHER, .read = read_effects, .section = &effect_section, .shown = "[]", .form = "list of effects",
+     .doc = "the live laws"},
+    {.key = "materials", .type = PARAMETER_LIST, .section = &material_section, .size = sizeof(material), .required = true,
+     AT(scene, material), .count = offsetof(scene, material_count), .doc = "what the particles are made of"},
+    {.key = "walls", .type = PARAMETER_LIST, .section = &wall_section, .size = sizeof(wall), AT(scene, wall),
+     .count = offsetof(scene, wall_count), .shown = "[]", .doc = "rigid walls"},
+    {.key = "interactions", .type = PARAMETER_LIST, .section = &interaction_section, .size = sizeof(interaction), AT(scene, interaction),
+     .count = offsetof(scene, interaction_count), .shown = "[]", .doc = "what two bodies in contact share"},
+    {.key = "particles", .type = PARAMETER_LIST, .section = &group_section, .size = sizeof(particle_group), .required = true, AT(scene, group),
+     .count = offsetof(scene, group_count), .doc = "groups of particles"},
+    {.key = "stages", .type = PARAMETER_LIST, .section = &stage_section, .size = sizeof(scene_stage), .required = true, AT(scene, stage),
+     .count = offsetof(scene, stage_count), .doc = "what is run, one stage after the other"},
+    {.key = "output", .type = PARAMETER_SECTION, .section = &output_section, AT(scene, output), .doc = "what the results file holds"},
+    {.key = "contact_table", .type = PARAMETER_SECTION, .section = &table_section, AT(scene, table), .doc = "how contacts are searched"},
+    {.key = "guards", .type = PARAMETER_SECTION, .section = &guard_section, AT(scene, guards), .doc = "checks that stop a run that goes wrong"},
+    {.key = "study", .type = PARAMETER_SECTION, .section = &study_section, .doc = "what a study looks at"},
+    {0},
+};
+const section scene_section = {.name = "scene", .doc = "The keys of a scene.", .row = scene_rows};
