@@ -9,7 +9,6 @@ const law law_composition_several = {
     .source = "",
     .kernel_file = "effect/composition_several.cl",
     .pair_fields = {&field_material},
-    .particle_fields = {&field_material},
 };
 
 const law law_periodic_box = {

@@ -1,0 +1,99 @@
+/* What the host and the kernels share: fixed-width types, widest member first, explicit padding, no pointers. */
+#ifndef CLAST_SHARED_H
+#define CLAST_SHARED_H
+
+#ifdef __OPENCL_VERSION__
+typedef double clast_f64;
+typedef long clast_i64;
+typedef int clast_i32;
+#else
+#include <stdint.h>
+typedef double clast_f64;
+typedef int64_t clast_i64;
+typedef int32_t clast_i32;
+#endif
+
+/* Particles a block: one work-group, and the unit of the sliced slot table. */
+#define CLAST_BLOCK 64
+
+/* Passed by value to every stage. */
+typedef struct clast_launch {
+    clast_f64 dt;            /* s */
+    clast_f64 gravity[3];    /* m/s2 */
+    clast_f64 drift[3];      /* common displacement since the table was built, m */
+    clast_f64 travel2;       /* square of the displacement that asks for a new table, m2 */
+    clast_f64 low[3];        /* domain, m */
+    clast_f64 high[3];
+    clast_f64 length[3];     /* periodic lengths; huge where not periodic */
+    clast_i64 particle_stride; /* elements between the components of a particle field */
+    clast_i64 record_stride;   /* elements between the components of a record field */
+    clast_i32 particle_count;
+    clast_i32 first_wall_group; /* work-groups of the pair stage from here on hold wall records */
+    clast_i32 step;             /* counts from the start of the batch */
+    clast_i32 pose_row;         /* row of the wall and mover tables for this step */
+    clast_i32 face_count;
+    clast_i32 mover_count;
+} clast_launch;
+
+/* Written by stages that find something; the host reads it once a batch. */
+typedef struct clast_control {
+    clast_i32 halt_step; /* stages of this step and later ones return at once */
+    clast_i32 reason;    /* bits: CLAST_HALT_* */
+    clast_i32 spare[2];
+} clast_control;
+
+#define CLAST_HALT_TRAVEL 1
+#define CLAST_HALT_LEFT 2
+
+#define CLAST_FACE_PLANE 0
+#define CLAST_FACE_RECTANGLE 1
+#define CLAST_FACE_DISC 2
+
+/* A face of a wall at one step. A plane: origin and unit normal towards the grains. A rectangle: origin at its centre, unit edges e1, e2
+ * and half lengths `extent`. A disc: extent[0] is the radius. */
+typedef struct clast_face {
+    clast_f64 origin[3];
+    clast_f64 normal[3];
+    clast_f64 e1[3];
+    clast_f64 e2[3];
+    clast_f64 extent[2];
+    clast_f64 velocity[3]; /* of the point of the wall at `pivot` */
+    clast_f64 spin[3];
+    clast_f64 pivot[3];    /* torques on the wall are about this point */
+    clast_i32 shape;
+    clast_i32 party;       /* index of the named wall among materials and walls */
+    clast_i32 wall;
+    clast_i32 spare;
+} clast_face;
+
+/* A prescribed motion at one step: the displacement x -> pivot + R (x - pivot) + shift over the step, and the velocity field at its start. */
+typedef struct clast_mover {
+    clast_f64 shift[3];
+    clast_f64 pivot[3];
+    clast_f64 axis[3];
+    clast_f64 sine, versine; /* of the angle turned in the step: sin, 1 - cos */
+    clast_f64 velocity[3];
+    clast_f64 spin[3];
+} clast_mover;
+
+#define CLAST_LEVELS_MAX 12
+
+/* One level of the cell grid: radii within a factor of two. Coordinates wrap at `cells`, so that no position is outside. */
+typedef struct clast_level {
+    clast_f64 inverse_size[3]; /* 1/m */
+    clast_i32 cells[3];
+    clast_i32 first_cell;
+} clast_level;
+
+typedef struct clast_grid {
+    clast_f64 origin[3];
+    clast_f64 radius_max;
+    clast_f64 skin;
+    clast_level level[CLAST_LEVELS_MAX];
+    clast_i32 level_count;
+    clast_i32 cell_count; /* of all levels; one more bucket holds what has left */
+    clast_i32 drop_outside; /* grains outside low..high go to the last bucket */
+    clast_i32 spare;
+} clast_grid;
+
+#endif

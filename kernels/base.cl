@@ -1,0 +1,109 @@
+/* Scalars and vectors. A struct of three scalars vectorises where float3/double3 do not; functions are inlined always, since one call
+ * ends vectorisation. */
+#ifndef REAL_IS_FLOAT
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+typedef double real;
+#define R(x) ((real)(x))
+#else
+typedef float real;
+#define R(x) ((real)(x##f))
+#endif
+
+#define INLINE static inline __attribute__((always_inline))
+/* For what few work-items do: kept out of the loop that is to vectorise. */
+#define OUTLINE static __attribute__((noinline))
+
+typedef struct vec3 {
+    real x, y, z;
+} vec3;
+
+INLINE vec3 v3(real x, real y, real z)
+{
+    vec3 r;
+    r.x = x;
+    r.y = y;
+    r.z = z;
+    return r;
+}
+
+INLINE vec3 add(vec3 a, vec3 b)
+{
+    return v3(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+
+INLINE vec3 sub(vec3 a, vec3 b)
+{
+    return v3(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+
+INLINE vec3 scale(real s, vec3 a)
+{
+    return v3(s * a.x, s * a.y, s * a.z);
+}
+
+/* a + s b */
+INLINE vec3 add_scaled(vec3 a, real s, vec3 b)
+{
+    return v3(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
+}
+
+INLINE real dot3(vec3 a, vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+INLINE vec3 cross3(vec3 a, vec3 b)
+{
+    return v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+
+INLINE vec3 from3(const clast_f64 *a)
+{
+    return v3((real)a[0], (real)a[1], (real)a[2]);
+}
+
+/* Component c of a field of `stride` elements a component. */
+#define AT(field, stride, c, k) (field)[(size_t)(c) * (size_t)(stride) + (size_t)(k)]
+#define LOAD3(field, stride, k) v3(AT(field, stride, 0, k), AT(field, stride, 1, k), AT(field, stride, 2, k))
+#define STORE3(field, stride, k, v)        \
+    do {                                   \
+        AT(field, stride, 0, k) = (v).x;   \
+        AT(field, stride, 1, k) = (v).y;   \
+        AT(field, stride, 2, k) = (v).z;   \
+    } while (0)
+
+/* How a slot names its kernel arguments once and has them declared and passed: SLOT_PAIR_FIELDS(READ, WRITE) lists type and name. */
+#define DECLARE_READ(type, name) , __global const type *restrict name
+#define DECLARE_WRITE(type, name) , __global type *restrict name
+#define PASS(type, name) , name
+
+/* A contact, from its owner i to the other body j: a grain, or a wall (infinitely large, heavy and stiff). */
+typedef struct contact {
+    vec3 n;              /* unit normal from i to j */
+    real overlap;        /* m; 0 where the two do not touch */
+    real approach;       /* rate of the overlap, m/s */
+    real radius_i, radius_j, mass_i, mass_j;
+    real radius_eff;     /* r* = ri rj/(ri + rj); r at a wall */
+    real mass_eff;       /* m*; m at a wall */
+    real contact_radius; /* sqrt(r* d) */
+    real inertia_root;   /* sqrt(m* sqrt(r* d)): every damper of TM is a constant times this */
+    real arm_i, arm_j;   /* of the friction force */
+    vec3 slip;           /* tangential relative velocity of the surfaces */
+    vec3 turn;           /* rate at which the normal turns */
+    vec3 spin_i, spin_j;
+    real dt;
+    int class;           /* row of the contact constants */
+    __global const real *value; /* that row */
+} contact;
+
+/* What the laws make of it. */
+typedef struct response {
+    real normal;     /* N, never negative */
+    vec3 tangential; /* force on i */
+    vec3 rolling;    /* moment on i; j gets the opposite */
+} response;
+
+/* Stiffness and damping of one mode, for the step limit. */
+typedef struct mode {
+    real stiffness, damping;
+} mode;

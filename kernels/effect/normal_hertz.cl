@@ -1,0 +1,26 @@
+/* normal: Hertz, TM Eq. 2 and 6; N = [4/3 E* sqrt(r*) d^1.5 + 2 xi sqrt(2 E* m* sqrt(r*)) d^(1/4) d']_+ (clamp: BM sec. 4).
+ * Reads NORMAL_MODULUS = E* (Pa), NORMAL_DAMPING = 2 xi sqrt(2 E*) (Pa^1/2). Writes the normal force. */
+#ifndef NORMAL_MODULUS
+#define NORMAL_MODULUS 0
+#define NORMAL_DAMPING 1
+#endif
+
+INLINE void normal_force(const contact *c, response *out)
+{
+    real spring = R(1.33333333333333333) * c->value[NORMAL_MODULUS] * c->contact_radius * c->overlap;
+    real damper = c->value[NORMAL_DAMPING] * c->inertia_root * c->approach;
+    real force = spring + damper;
+    out->normal = force > R(0.0) ? force : R(0.0);
+}
+
+INLINE real normal_energy(const contact *c)
+{
+    return R(0.53333333333333333) * c->value[NORMAL_MODULUS] * c->contact_radius * c->overlap * c->overlap;
+}
+
+/* Tangent stiffness 2 E* sqrt(r* d). */
+INLINE mode normal_mode(const contact *c)
+{
+    mode m = {R(2.0) * c->value[NORMAL_MODULUS] * c->contact_radius, c->value[NORMAL_DAMPING] * c->inertia_root};
+    return m;
+}

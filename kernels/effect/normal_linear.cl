@@ -1,0 +1,25 @@
+/* normal: linear spring and dashpot, N = [k d + 2 xi sqrt(m* k) d']_+ while the two touch.
+ * Reads NORMAL_STIFFNESS = k (N/m), NORMAL_DAMPING = 2 xi sqrt(k). Writes the normal force. */
+#ifndef NORMAL_STIFFNESS
+#define NORMAL_STIFFNESS 0
+#define NORMAL_DAMPING 1
+#endif
+
+INLINE void normal_force(const contact *c, response *out)
+{
+    real damping = c->overlap > R(0.0) ? c->value[NORMAL_DAMPING] * sqrt(c->mass_eff) : R(0.0);
+    real force = c->value[NORMAL_STIFFNESS] * c->overlap + damping * c->approach;
+    out->normal = force > R(0.0) ? force : R(0.0);
+}
+
+INLINE real normal_energy(const contact *c)
+{
+    return R(0.5) * c->value[NORMAL_STIFFNESS] * c->overlap * c->overlap;
+}
+
+INLINE mode normal_mode(const contact *c)
+{
+    real touching = c->overlap > R(0.0) ? R(1.0) : R(0.0);
+    mode m = {touching * c->value[NORMAL_STIFFNESS], touching * c->value[NORMAL_DAMPING] * sqrt(c->mass_eff)};
+    return m;
+}

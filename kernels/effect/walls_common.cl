@@ -1,0 +1,32 @@
+/* What all wall shapes share. A wall contact is the contact of a grain with a body that is infinitely large, heavy and stiff (TM Remark 1). */
+#define WALLS_PAIR_FIELDS(READ, WRITE) READ(clast_face, faces)
+#define WALLS_CONTACT(launch, face, x, v, c, touch) \
+    walls_contact(faces + (launch)->pose_row * (launch)->face_count, (launch)->face_count, face, x, v, c, touch)
+
+typedef struct wall_touch {
+    vec3 point;    /* of the wall, nearest to the grain's centre */
+    vec3 velocity; /* of the wall there */
+    vec3 pivot;    /* about which torques on the wall are taken */
+    real distance; /* from the centre; huge where another face has this contact */
+    int party;
+} wall_touch;
+
+/* n, spin_j and turn of the contact; a face turns with its wall, an edge or a corner with the grain's passage. */
+INLINE void walls_fill(const __global clast_face *face, vec3 x, vec3 n, vec3 point, real distance, bool on_face, vec3 velocity_i, contact *c,
+                       wall_touch *touch)
+{
+    vec3 spin = v3((real)face->spin[0], (real)face->spin[1], (real)face->spin[2]);
+    vec3 pivot = v3((real)face->pivot[0], (real)face->pivot[1], (real)face->pivot[2]);
+    vec3 at_pivot = v3((real)face->velocity[0], (real)face->velocity[1], (real)face->velocity[2]);
+    touch->point = point;
+    touch->pivot = pivot;
+    touch->velocity = add(at_pivot, cross3(spin, sub(point, pivot)));
+    touch->distance = distance;
+    touch->party = face->party;
+    vec3 passing = scale(R(1.0) / distance, cross3(n, sub(touch->velocity, velocity_i)));
+    vec3 across = add_scaled(spin, -dot3(spin, n), n);
+    c->n = n;
+    c->spin_j = spin;
+    c->turn = v3(on_face ? across.x : passing.x, on_face ? across.y : passing.y, on_face ? across.z : passing.z);
+    (void)x;
+}

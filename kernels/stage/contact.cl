@@ -1,0 +1,88 @@
+/* From records to forces: what the pair stage, the probe and the step limit share. A record is a pair of grains, or a grain and a face of a
+ * wall; records of walls stand in work-groups of their own behind the pairs. Rows that pad a work-group name the same grain twice. */
+#define PAIR_FIELDS(READ, WRITE)                                                                                          \
+    READ(int, owner) READ(int, other) READ(real, position) READ(real, velocity) READ(real, radius) READ(real, mass)            \
+    READ(real, contact_constants) \
+    WRITE(real, force) COMPOSITION_PAIR_FIELDS(READ, WRITE) MOTION_PAIR_FIELDS(READ, WRITE) ROTATION_PAIR_FIELDS(READ, WRITE)    \
+    SLIP_PAIR_FIELDS(READ, WRITE) TANGENTIAL_PAIR_FIELDS(READ, WRITE) ROLLING_PAIR_FIELDS(READ, WRITE) WALLS_PAIR_FIELDS(READ, WRITE)
+#define PAIR_DECLARE PAIR_FIELDS(DECLARE_READ, DECLARE_WRITE)
+#define PAIR_PASS PAIR_FIELDS(PASS, PASS)
+
+/* What follows from normal, overlap and the two bodies. */
+INLINE void contact_complete(contact *c, real distance)
+{
+    c->contact_radius = sqrt(c->radius_eff * c->overlap);
+    c->inertia_root = sqrt(c->mass_eff * c->contact_radius);
+    (void)distance;
+}
+
+INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR_DECLARE)
+{
+    int i = owner[k], j = other[k];
+    long ps = launch->particle_stride;
+    vec3 d = periodic_nearest(launch, sub(LOAD3(position, ps, j), LOAD3(position, ps, i)));
+    vec3 u = sub(LOAD3(velocity, ps, i), LOAD3(velocity, ps, j));
+    real d2 = dot3(d, d), sum;
+    c->radius_i = radius[i];
+    c->radius_j = radius[j];
+    c->spin_i = ROTATION_LOAD(launch, i);
+    c->spin_j = ROTATION_LOAD(launch, j);
+    c->mass_i = motion_mass(MOTION_GRAIN(i), mass[i]);
+    c->mass_j = motion_mass(MOTION_GRAIN(j), mass[j]);
+    c->class = composition_class(COMPOSITION_GRAIN(i), COMPOSITION_GRAIN(j));
+    sum = c->radius_i + c->radius_j;
+    bool apart = d2 > R(0.0);
+    real inverse = R(1.0) / sqrt(apart ? d2 : R(1.0)), distance = d2 * inverse;
+    real overlap = sum - distance;
+    overlap = apart && overlap > R(0.0) ? overlap : R(0.0);
+    c->overlap = motion_overlap(MOTION_GRAIN(i), MOTION_GRAIN(j), overlap);
+    c->n = scale(inverse, d);
+    c->radius_eff = c->radius_i * c->radius_j / sum;
+    c->mass_eff = c->mass_i * c->mass_j / (c->mass_i + c->mass_j);
+    real shrink = LEVER_ARM_SHRINKS * c->overlap / sum;
+    c->arm_i = c->radius_i - shrink * c->radius_j;
+    c->arm_j = c->radius_j - shrink * c->radius_i;
+    c->approach = dot3(u, c->n);
+    vec3 across = add_scaled(u, -c->approach, c->n);
+    c->turn = scale(-inverse, cross3(c->n, u));
+    c->slip = add(across, cross3(add_scaled(scale(c->arm_i, c->spin_i), c->arm_j, c->spin_j), c->n));
+    contact_complete(c, distance);
+}
+
+INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_touch *touch PAIR_DECLARE)
+{
+    int i = owner[k];
+    long ps = launch->particle_stride;
+    vec3 x = LOAD3(position, ps, i), v = LOAD3(velocity, ps, i);
+    c->radius_i = radius[i];
+    c->radius_j = c->radius_i;
+    c->spin_i = ROTATION_LOAD(launch, i);
+    c->mass_i = mass[i];
+    c->mass_j = R(1e30);
+    WALLS_CONTACT(launch, other[k], x, v, c, touch);
+    c->class = composition_class(COMPOSITION_GRAIN(i), touch->party);
+    real overlap = c->radius_i - touch->distance;
+    c->overlap = motion_overlap(MOTION_GRAIN(i), 0, overlap > R(0.0) ? overlap : R(0.0));
+    c->radius_eff = c->radius_i;
+    c->mass_eff = c->mass_i;
+    c->arm_i = c->radius_i - LEVER_ARM_SHRINKS * c->overlap;
+    c->arm_j = R(0.0);
+    vec3 u = sub(v, touch->velocity);
+    c->approach = dot3(u, c->n);
+    c->slip = add(add_scaled(u, -c->approach, c->n), cross3(scale(c->arm_i, c->spin_i), c->n));
+    contact_complete(c, touch->distance);
+}
+
+typedef struct contact_state {
+    slip_state slip;
+    tangential_state tangential;
+    rolling_state rolling;
+} contact_state;
+
+/* The slots in their order. */
+INLINE void contact_laws(contact *c, contact_state *s, response *out)
+{
+    normal_force(c, out);
+    tangential_force(c, &s->slip, &s->tangential, out);
+    rolling_moment(c, &s->rolling, out);
+}

@@ -1,0 +1,185 @@
+/* What guards, observables and the step limit read. Sums run in the order of permanent ids, chunk by chunk, so that they do not depend on
+ * when the table was built. */
+#define OBSERVE_CHUNK 256
+
+/* kinetic and rotational energy; potential in gravity; mass; momentum; angular momentum about the origin; largest speed and m g r. */
+#define OBSERVE_PARTICLE_SUMS 12
+
+__kernel void observe_particles(const clast_launch launch, __global const int *restrict where, __global const real *restrict position,
+                                __global const real *restrict velocity, __global const real *restrict radius, __global const real *restrict mass,
+                                __global double *restrict partial, const int id_count ROTATION_OBSERVE_FIELDS(DECLARE_READ, DECLARE_WRITE))
+{
+    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, id_count);
+    double sum[OBSERVE_PARTICLE_SUMS];
+    for (int q = 0; q < OBSERVE_PARTICLE_SUMS; q++)
+        sum[q] = 0.0;
+    vec3 g = from3(launch.gravity);
+    for (int n = first; n < end; n++) {
+        int i = where[n];
+        if (i < 0)
+            continue;
+        vec3 x = LOAD3(position, launch.particle_stride, i), v = LOAD3(velocity, launch.particle_stride, i);
+        vec3 w = ROTATION_LOAD(&launch, i);
+        real m = mass[i], inertia = R(0.4) * m * radius[i] * radius[i];
+        vec3 orbital = cross3(x, v);
+        sum[0] += R(0.5) * m * dot3(v, v);
+        sum[1] += R(0.5) * inertia * dot3(w, w);
+        sum[2] -= m * dot3(g, x);
+        sum[3] += m;
+        sum[4] += m * v.x;
+        sum[5] += m * v.y;
+        sum[6] += m * v.z;
+        sum[7] += m * orbital.x + inertia * w.x;
+        sum[8] += m * orbital.y + inertia * w.y;
+        sum[9] += m * orbital.z + inertia * w.z;
+        sum[10] = fmax(sum[10], (double)dot3(v, v));
+        sum[11] += m * radius[i];
+    }
+    for (int q = 0; q < OBSERVE_PARTICLE_SUMS; q++)
+        partial[chunk * OBSERVE_PARTICLE_SUMS + q] = sum[q];
+}
+
+/* Per record, where its force stands: overlap over the smaller radius, elastic energy, overlap. History and pair list stay. */
+INLINE void observe_record(const clast_launch *launch, int k, bool wall PAIR_DECLARE)
+{
+    contact c;
+    contact_state s;
+    wall_touch touch;
+    if (wall)
+        contact_of_wall(launch, k, &c, &touch PAIR_PASS);
+    else
+        contact_of_grains(launch, k, &c PAIR_PASS);
+    c.dt = R(0.0);
+    c.value = contact_constants + c.class * CONTACT_CONSTANTS;
+    PAIR_LOAD_STATE(launch, k, s);
+    real smaller = wall || c.radius_i < c.radius_j ? c.radius_i : c.radius_j;
+    real touching = c.overlap > R(0.0) ? R(1.0) : R(0.0);
+    AT(force, launch->record_stride, 0, k) = c.overlap / smaller;
+    AT(force, launch->record_stride, 1, k) =
+        touching * (normal_energy(&c) + tangential_energy(&c, &s.tangential) + rolling_energy(&c, &s.rolling));
+    AT(force, launch->record_stride, 2, k) = c.overlap;
+}
+
+__kernel void observe_records(const clast_launch launch PAIR_DECLARE)
+{
+    observe_record(&launch, get_global_id(0), (int)get_group_id(0) >= launch.first_wall_group PAIR_PASS);
+}
+
+/* Stiffness and damping of every record's modes: the normal one where its force stands, the others where its torque stands. Both count
+ * twice between two grains, whose motions may oppose each other (docs/theory.md). */
+__kernel void limit_records(const clast_launch launch PAIR_DECLARE)
+{
+    int k = get_global_id(0);
+    contact c;
+    wall_touch touch;
+    bool wall = (int)get_group_id(0) >= launch.first_wall_group;
+    if (wall)
+        contact_of_wall(&launch, k, &c, &touch PAIR_PASS);
+    else
+        contact_of_grains(&launch, k, &c PAIR_PASS);
+    c.dt = R(0.0);
+    c.value = contact_constants + c.class * CONTACT_CONSTANTS;
+    real twice = wall ? R(1.0) : R(2.0);
+    mode n = normal_mode(&c), t = tangential_mode(&c), r = rolling_mode(&c);
+    AT(force, launch.record_stride, 0, k) = twice * n.stiffness;
+    AT(force, launch.record_stride, 1, k) = twice * n.damping;
+    t.stiffness *= twice;
+    t.damping *= twice;
+    r.stiffness *= twice;
+    r.damping *= twice;
+    ROTATION_STORE_MODES(&launch, k, t, r);
+}
+
+/* Largest dt with dt^2 a + 2 dt b < 4 (semi-implicit Euler). */
+INLINE real limit_step(real a, real b)
+{
+    real s = b + sqrt(b * b + R(4.0) * a);
+    return s > R(0.0) ? R(4.0) / s : R(1e30);
+}
+
+/* Per chunk of grains the smallest limit of the normal modes, and of the sliding and rolling modes together. */
+__kernel void limit_particles(const clast_launch launch, __global const uint *restrict slot_offset, __global const int *restrict slots,
+                              __global const real *restrict force, __global const real *restrict radius, __global const real *restrict mass,
+                              __global double *restrict partial ROTATION_LIMIT_FIELDS(DECLARE_READ, DECLARE_WRITE))
+{
+    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
+    real normal = R(1e30), turning = R(1e30);
+    for (int i = first; i < end; i++) {
+        real a = R(0.0), b = R(0.0), at = R(0.0), bt = R(0.0), ar = R(0.0), br = R(0.0);
+        uint last = slot_offset[i / CLAST_BLOCK + 1];
+        for (uint s = slot_offset[i / CLAST_BLOCK] + i % CLAST_BLOCK; s < last; s += CLAST_BLOCK) {
+            int entry = slots[s];
+            if (entry == 0)
+                break;
+            int k = (entry > 0 ? entry : -entry) - 1;
+            a += AT(force, launch.record_stride, 0, k);
+            b += AT(force, launch.record_stride, 1, k);
+            at += ROTATION_LOAD_MODE(&launch, k, 0);
+            bt += ROTATION_LOAD_MODE(&launch, k, 1);
+            ar += ROTATION_LOAD_MODE(&launch, k, 2);
+            br += ROTATION_LOAD_MODE(&launch, k, 3);
+        }
+        real m = R(1.0) / mass[i], j = m / (R(0.4) * radius[i] * radius[i]);
+        normal = fmin(normal, limit_step(a * m, b * m));
+        turning = fmin(turning, limit_step(R(3.5) * at * m + ar * j, R(3.5) * bt * m + br * j));
+    }
+    partial[2 * chunk] = normal;
+    partial[2 * chunk + 1] = turning;
+}
+
+/* Guards, per chunk: first grain that is not a number, that moves too far in a step, that has left the domain (sorted indices; -1: none),
+ * and the largest speed squared. Numbers are tested by their bits, so that no compiler option can lose the test. */
+INLINE bool guard_is_number(double x)
+{
+    return ((as_ulong(x) >> 52) & 0x7ff) != 0x7ff;
+}
+
+#define GUARD_FINDINGS 4
+
+__kernel void guard_particles(const clast_launch launch, __global const real *restrict position, __global const real *restrict velocity,
+                              __global double *restrict partial, const int bounded)
+{
+    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
+    double bad = -1.0, fastest = -1.0, left = -1.0, most = 0.0;
+    for (int i = first; i < end; i++) {
+        vec3 x = LOAD3(position, launch.particle_stride, i), v = LOAD3(velocity, launch.particle_stride, i);
+        double speed2 = dot3(v, v);
+        if (!guard_is_number(x.x + x.y + x.z) || !guard_is_number(speed2)) {
+            if (bad < 0.0)
+                bad = i;
+        } else {
+            if (speed2 > most) {
+                most = speed2;
+                fastest = i;
+            }
+            bool inside = x.x >= (real)launch.low[0] && x.x <= (real)launch.high[0] && x.y >= (real)launch.low[1] &&
+                          x.y <= (real)launch.high[1] && x.z >= (real)launch.low[2] && x.z <= (real)launch.high[2];
+            if (bounded && !inside && left < 0.0)
+                left = i;
+        }
+    }
+    partial[chunk * GUARD_FINDINGS] = bad;
+    partial[chunk * GUARD_FINDINGS + 1] = fastest;
+    partial[chunk * GUARD_FINDINGS + 2] = left;
+    partial[chunk * GUARD_FINDINGS + 3] = most;
+}
+
+/* Per chunk of records the largest overlap over the smaller radius, and its record. Geometry only: cheap, and touches no field. */
+__kernel void guard_records(const clast_launch launch, __global const int *restrict owner, __global const int *restrict other,
+                            __global const real *restrict position, __global const real *restrict radius, __global double *restrict partial,
+                            const int pair_count)
+{
+    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, pair_count);
+    double most = 0.0, where = -1.0;
+    for (int k = first; k < end; k++) {
+        int i = owner[k], j = other[k];
+        vec3 d = periodic_nearest(&launch, sub(LOAD3(position, launch.particle_stride, j), LOAD3(position, launch.particle_stride, i)));
+        double smaller = fmin(radius[i], radius[j]), ratio = (radius[i] + radius[j] - sqrt(dot3(d, d))) / smaller;
+        if (ratio > most) {
+            most = ratio;
+            where = k;
+        }
+    }
+    partial[2 * chunk] = most;
+    partial[2 * chunk + 1] = where;
+}

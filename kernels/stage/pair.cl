@@ -1,0 +1,73 @@
+/* The pair stage: force and torque of every record, and its history one step on. */
+#define PAIR_LOAD_STATE(launch, k, s)             \
+    SLIP_LOAD(launch, k, (s).slip);               \
+    TANGENTIAL_LOAD(launch, k, (s).tangential);   \
+    ROLLING_LOAD(launch, k, (s).rolling)
+#define PAIR_STORE_STATE(launch, k, s)            \
+    SLIP_STORE(launch, k, (s).slip);              \
+    TANGENTIAL_STORE(launch, k, (s).tangential);  \
+    ROLLING_STORE(launch, k, (s).rolling)
+
+/* The rest of a record once its geometry is known; `keep` writes the history. */
+#define PAIR_LAWS(keep)                                                  \
+    c.dt = (real)launch->dt;                                             \
+    c.value = contact_constants + c.class * CONTACT_CONSTANTS;           \
+    PAIR_LOAD_STATE(launch, k, s);                                       \
+    contact_laws(&c, &s, &out);                                          \
+    vec3 total = add_scaled(out.tangential, -out.normal, c.n);           \
+    vec3 lever = cross3(c.n, out.tangential);                            \
+    vec3 on_owner = add_scaled(out.rolling, c.arm_i, lever);             \
+    STORE3(force, launch->record_stride, k, total);                      \
+    keep(launch, k, s)
+#define PAIR_KEEP_NOTHING(launch, k, s)
+
+#define PAIR_OF_GRAINS(name, keep)                                                                  \
+    INLINE void name(const clast_launch *launch, int k PAIR_DECLARE)                                \
+    {                                                                                               \
+        contact c;                                                                                  \
+        contact_state s;                                                                            \
+        response out;                                                                               \
+        contact_of_grains(launch, k, &c PAIR_PASS);                                                 \
+        PAIR_LAWS(keep);                                                                            \
+        vec3 on_other = add_scaled(scale(R(-1.0), out.rolling), c.arm_j, lever);                    \
+        ROTATION_STORE_TORQUE(launch, k, on_owner, on_other);                                       \
+    }
+
+#define PAIR_OF_WALL(name, keep)                                                                    \
+    OUTLINE void name(const clast_launch *launch, int k PAIR_DECLARE)                               \
+    {                                                                                               \
+        contact c;                                                                                  \
+        contact_state s;                                                                            \
+        response out;                                                                               \
+        wall_touch touch;                                                                           \
+        contact_of_wall(launch, k, &c, &touch PAIR_PASS);                                           \
+        PAIR_LAWS(keep);                                                                            \
+        vec3 on_wall = sub(cross3(total, sub(touch.point, touch.pivot)), out.rolling);              \
+        ROTATION_STORE_TORQUE(launch, k, on_owner, on_wall);                                        \
+    }
+
+PAIR_OF_GRAINS(pair_of_grains, PAIR_STORE_STATE)
+PAIR_OF_WALL(pair_of_wall, PAIR_STORE_STATE)
+PAIR_OF_GRAINS(pair_of_grains_as_is, PAIR_KEEP_NOTHING)
+PAIR_OF_WALL(pair_of_wall_as_is, PAIR_KEEP_NOTHING)
+
+__kernel void pair_stage(const clast_launch launch, __global const clast_control *restrict control PAIR_DECLARE)
+{
+    if (control->halt_step <= launch.step)
+        return;
+    int k = get_global_id(0);
+    if ((int)get_group_id(0) < launch.first_wall_group)
+        pair_of_grains(&launch, k PAIR_PASS);
+    else
+        pair_of_wall(&launch, k PAIR_PASS);
+}
+
+/* The forces as they stand, with no step taken: what output and observables read. Leaves history alone. */
+__kernel void pair_probe(const clast_launch launch PAIR_DECLARE)
+{
+    int k = get_global_id(0);
+    if ((int)get_group_id(0) < launch.first_wall_group)
+        pair_of_grains_as_is(&launch, k PAIR_PASS);
+    else
+        pair_of_wall_as_is(&launch, k PAIR_PASS);
+}

@@ -1,0 +1,64 @@
+/* The particle stage: gathers the contacts of a grain in slot order, adds what acts on the grain itself, and advances it. */
+#define PARTICLE_FIELDS(READ, WRITE)                                                                                              \
+    READ(uint, slot_offset) READ(int, slots) READ(real, force) READ(real, radius) READ(real, mass) WRITE(real, position) WRITE(real, velocity)     \
+    READ(real, built_position) READ(clast_mover, movers) MOTION_PARTICLE_FIELDS(READ, WRITE) \
+    ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE)
+#define PARTICLE_DECLARE PARTICLE_FIELDS(DECLARE_READ, DECLARE_WRITE)
+#define PARTICLE_PASS PARTICLE_FIELDS(PASS, PASS)
+
+/* Sums force and torque over the slots of a grain; they end at the first empty one. */
+INLINE void particle_gather(const clast_launch *launch, int block, int lane, vec3 *total, vec3 *moment PARTICLE_DECLARE)
+{
+    vec3 f = v3(R(0.0), R(0.0), R(0.0)), t = f;
+    uint first = slot_offset[block], end = slot_offset[block + 1];
+    for (uint s = first; s < end; s += CLAST_BLOCK) {
+        int entry = slots[s + lane];
+        if (entry == 0)
+            break;
+        real sign = entry > 0 ? R(1.0) : R(-1.0);
+        int k = (entry > 0 ? entry : -entry) - 1;
+        f = add_scaled(f, sign, LOAD3(force, launch->record_stride, k));
+        t = add(t, ROTATION_GATHER(launch, k, sign));
+    }
+    *total = f;
+    *moment = t;
+}
+
+/* One step of grain i; returns the square of its displacement since the table was built, relative to the common one. */
+INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t PARTICLE_DECLARE)
+{
+    long ps = launch->particle_stride;
+    real dt = (real)launch->dt, r = radius[i];
+    real m = mass[i], inertia = R(0.4) * m * r * r;
+    int mover_i = MOTION_GRAIN(i);
+    vec3 x = LOAD3(position, ps, i), v = LOAD3(velocity, ps, i), w = ROTATION_LOAD(launch, i);
+    __global const clast_mover *row = movers + launch->pose_row * launch->mover_count;
+    f = body_force(add_scaled(f, m, from3(launch->gravity)), v, m);
+    t = body_force(t, w, inertia);
+    vec3 v1 = integrate_velocity(v, scale(R(1.0) / m, f), dt);
+    vec3 x1 = motion_position(row, mover_i, integrate_position(x, v1, dt), x);
+    v1 = motion_velocity(row, mover_i, v1, x1);
+    vec3 w1 = motion_spin(row, mover_i, rotation_advance(w, t, inertia, dt));
+    x1 = periodic_wrap(launch, x1);
+    STORE3(position, ps, i, x1);
+    STORE3(velocity, ps, i, v1);
+    ROTATION_STORE(launch, i, w1);
+    ORIENTATION_ADVANCE(launch, i, w1);
+    vec3 moved = periodic_nearest(launch, sub(sub(x1, LOAD3(built_position, ps, i)), from3(launch->drift)));
+    return dot3(moved, moved);
+}
+
+/* A grain that has used up half the skin, or has left the domain, stops the batch after this step. */
+__kernel void particle_stage(const clast_launch launch, __global clast_control *restrict control PARTICLE_DECLARE)
+{
+    if (control->halt_step <= launch.step)
+        return;
+    int i = get_global_id(0);
+    vec3 f, t;
+    particle_gather(&launch, get_group_id(0), get_local_id(0), &f, &t PARTICLE_PASS);
+    real travel2 = particle_advance(&launch, i, f, t PARTICLE_PASS);
+    if (i < launch.particle_count && !(travel2 <= (real)launch.travel2)) {
+        atomic_or(&control->reason, CLAST_HALT_TRAVEL);
+        atomic_min(&control->halt_step, launch.step + 1);
+    }
+}

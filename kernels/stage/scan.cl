@@ -1,0 +1,37 @@
+/* Exclusive prefix sums in three launches: every work-item adds up a chunk, one adds up the chunks, every work-item writes its own. */
+#define SCAN_CHUNK 1024
+
+__kernel void scan_chunks(__global const uint *restrict values, __global uint *restrict sums, const int count)
+{
+    int chunk = get_global_id(0), first = chunk * SCAN_CHUNK;
+    int end = min(first + SCAN_CHUNK, count);
+    uint sum = 0;
+    for (int i = first; i < end; i++)
+        sum += values[i];
+    sums[chunk] = sum;
+}
+
+__kernel void scan_sums(__global uint *restrict sums, const int chunks)
+{
+    uint sum = 0;
+    for (int c = 0; c < chunks; c++) {
+        uint here = sums[c];
+        sums[c] = sum;
+        sum += here;
+    }
+    sums[chunks] = sum;
+}
+
+/* result[count] holds the total. */
+__kernel void scan_write(__global const uint *restrict values, __global const uint *restrict sums, __global uint *restrict result, const int count)
+{
+    int chunk = get_global_id(0), first = chunk * SCAN_CHUNK;
+    int end = min(first + SCAN_CHUNK, count);
+    uint sum = sums[chunk];
+    for (int i = first; i < end; i++) {
+        result[i] = sum;
+        sum += values[i];
+    }
+    if (end == count)
+        result[count] = sum;
+}

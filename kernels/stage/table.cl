@@ -1,0 +1,280 @@
+/* Builds the contact table: sorts the grains by cell, finds the pairs, gives every grain its slots, and carries histories over.
+ * The smaller grain owns a pair (ties: the smaller permanent id), so a grain looks for partners in its own level of the grid and in
+ * coarser ones only. Slots are sorted by the partner's permanent id, walls last, so that sums do not depend on the order in memory. */
+
+INLINE int table_wrap(real t, int cells)
+{
+    real c = floor(t);
+    c = c - (real)cells * floor(c / (real)cells);
+    return c >= R(0.0) && c < (real)cells ? (int)c : 0;
+}
+
+INLINE int table_level(__global const clast_grid *grid, real r)
+{
+    int level = 0;
+    real size = (real)grid->radius_max * R(0.5);
+    while (level + 1 < grid->level_count && r <= size) {
+        level++;
+        size *= R(0.5);
+    }
+    return level;
+}
+
+INLINE int table_cell(__global const clast_grid *grid, int level, vec3 x)
+{
+    __global const clast_level *l = grid->level + level;
+    int cx = table_wrap((x.x - (real)grid->origin[0]) * (real)l->inverse_size[0], l->cells[0]);
+    int cy = table_wrap((x.y - (real)grid->origin[1]) * (real)l->inverse_size[1], l->cells[1]);
+    int cz = table_wrap((x.z - (real)grid->origin[2]) * (real)l->inverse_size[2], l->cells[2]);
+    return l->first_cell + (cz * l->cells[1] + cy) * l->cells[0] + cx;
+}
+
+/* Cell and rank in it of every grain; what is outside a domain that drops its leavers goes to the last bucket. */
+__kernel void table_bin(const clast_launch launch, __global const clast_grid *restrict grid, __global const real *restrict position,
+                        __global const real *restrict radius, __global uint *restrict cell_of, __global uint *restrict rank_of,
+                        __global uint *restrict cell_count)
+{
+    int i = get_global_id(0);
+    if (i >= launch.particle_count)
+        return;
+    vec3 x = LOAD3(position, launch.particle_stride, i);
+    int cell = table_cell(grid, table_level(grid, radius[i]), x);
+    bool inside = x.x >= (real)launch.low[0] && x.x <= (real)launch.high[0] && x.y >= (real)launch.low[1] && x.y <= (real)launch.high[1] &&
+                  x.z >= (real)launch.low[2] && x.z <= (real)launch.high[2];
+    if (grid->drop_outside && !inside)
+        cell = grid->cell_count;
+    cell_of[i] = cell;
+    rank_of[i] = atomic_inc((volatile __global uint *)&cell_count[cell]);
+}
+
+__kernel void table_order(const clast_launch launch, __global const uint *restrict cell_of, __global const uint *restrict rank_of,
+                          __global const uint *restrict cell_start, __global int *restrict order)
+{
+    int i = get_global_id(0);
+    if (i < launch.particle_count)
+        order[cell_start[cell_of[i]] + rank_of[i]] = i;
+}
+
+/* The order within a cell depends on nothing but the permanent ids. */
+__kernel void table_order_cells(__global const uint *restrict cell_start, __global const int *restrict id, __global int *restrict order, const int cells)
+{
+    int cell = get_global_id(0);
+    if (cell >= cells)
+        return;
+    uint first = cell_start[cell], end = cell_start[cell + 1];
+    for (uint a = first + 1; a < end; a++) {
+        int moved = order[a];
+        uint b = a;
+        for (; b > first && id[order[b - 1]] > id[moved]; b--)
+            order[b] = order[b - 1];
+        order[b] = moved;
+    }
+}
+
+__kernel void table_permute_real(const clast_launch launch, __global const int *restrict order, __global const real *restrict from,
+                                 __global real *restrict to, const int components)
+{
+    int i = get_global_id(0);
+    if (i >= launch.particle_count)
+        return;
+    int o = order[i];
+    for (int c = 0; c < components; c++)
+        AT(to, launch.particle_stride, c, i) = AT(from, launch.particle_stride, c, o);
+}
+
+__kernel void table_permute_int(const clast_launch launch, __global const int *restrict order, __global const int *restrict from,
+                                __global int *restrict to)
+{
+    int i = get_global_id(0);
+    if (i < launch.particle_count)
+        to[i] = from[order[i]];
+}
+
+/* True where i owns the pair with j and the two are within reach. */
+INLINE bool table_pairs(const clast_launch *launch, real skin, int i, vec3 xi, real ri, int id_i, int j, __global const real *restrict position,
+                        __global const real *restrict radius, __global const int *restrict id)
+{
+    real rj = radius[j];
+    vec3 d = periodic_nearest(launch, sub(LOAD3(position, launch->particle_stride, j), xi));
+    real reach = ri + rj + skin;
+    bool owns = rj > ri || (rj == ri && id[j] > id_i);
+    return j != i && owns && dot3(d, d) < reach * reach;
+}
+
+/* Calls TAKE(j) for every grain that i pairs with, level by level and cell by cell. */
+#define TABLE_FOR_PARTNERS(TAKE)                                                                                              \
+    for (int l = table_level(grid, ri); l >= 0; l--) {                                                                        \
+        __global const clast_level *v = grid->level + l;                                                                      \
+        int n0 = v->cells[0], n1 = v->cells[1], n2 = v->cells[2];                                                             \
+        int cx = table_wrap((xi.x - (real)grid->origin[0]) * (real)v->inverse_size[0], n0);                                   \
+        int cy = table_wrap((xi.y - (real)grid->origin[1]) * (real)v->inverse_size[1], n1);                                   \
+        int cz = table_wrap((xi.z - (real)grid->origin[2]) * (real)v->inverse_size[2], n2);                                   \
+        int w0 = min(n0, 3), w1 = min(n1, 3), w2 = min(n2, 3);                                                                \
+        for (int z = 0; z < w2; z++) {                                                                                        \
+            int kz = (cz + z + (w2 == 3 ? n2 - 1 : 0)) % n2;                                                                  \
+            for (int y = 0; y < w1; y++) {                                                                                    \
+                int ky = (cy + y + (w1 == 3 ? n1 - 1 : 0)) % n1, row = v->first_cell + (kz * n1 + ky) * n0;                   \
+                bool whole = w0 == 3 && cx > 0 && cx < n0 - 1;                                                                \
+                for (int x = 0; x < (whole ? 1 : w0); x++) {                                                                  \
+                    int kx = whole ? cx - 1 : (cx + x + (w0 == 3 ? n0 - 1 : 0)) % n0;                                         \
+                    uint end = cell_start[row + kx + (whole ? 3 : 1)];                                                        \
+                    for (uint j = cell_start[row + kx]; j < end; j++)                                                         \
+                        if (table_pairs(&launch, skin, i, xi, ri, id_i, j, position, radius, id)) {                           \
+                            TAKE(j);                                                                                          \
+                        }                                                                                                     \
+                }                                                                                                             \
+            }                                                                                                                 \
+        }                                                                                                                     \
+    }
+
+/* Pairs owned by each grain, and slots each grain needs. slot_count must be zero before. */
+__kernel void table_count(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
+                          __global const real *restrict position, __global const real *restrict radius, __global const int *restrict id,
+                          __global uint *restrict own_count, __global uint *restrict slot_count)
+{
+    int i = get_global_id(0);
+    if (i >= launch.particle_count) {
+        own_count[i] = 0;
+        return;
+    }
+    vec3 xi = LOAD3(position, launch.particle_stride, i);
+    real ri = radius[i], skin = (real)grid->skin;
+    int id_i = id[i];
+    uint found = 0;
+#define TABLE_COUNT(j)                                          \
+    found++;                                                    \
+    atomic_inc((volatile __global uint *)&slot_count[j])
+    TABLE_FOR_PARTNERS(TABLE_COUNT)
+    own_count[i] = found;
+    atomic_add((volatile __global uint *)&slot_count[i], found);
+}
+
+/* Writes the pairs of each grain, sorted by the partner's permanent id. */
+__kernel void table_fill(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
+                         __global const real *restrict position, __global const real *restrict radius, __global const int *restrict id,
+                         __global const uint *restrict own_start, __global int *restrict owner, __global int *restrict other)
+{
+    int i = get_global_id(0);
+    if (i >= launch.particle_count)
+        return;
+    vec3 xi = LOAD3(position, launch.particle_stride, i);
+    real ri = radius[i], skin = (real)grid->skin;
+    int id_i = id[i];
+    uint first = own_start[i], k = first;
+#define TABLE_WRITE(j)                                              \
+    uint at = k++;                                                  \
+    for (; at > first && id[other[at - 1]] > id[j]; at--)           \
+        other[at] = other[at - 1];                                  \
+    other[at] = j
+    TABLE_FOR_PARTNERS(TABLE_WRITE)
+    for (uint a = first; a < k; a++)
+        owner[a] = i;
+}
+
+/* Records that fill up a work-group name grain 0 twice. */
+__kernel void table_pad(__global int *restrict owner, __global int *restrict other, const int first, const int end)
+{
+    int k = first + (int)get_global_id(0);
+    if (k < end) {
+        owner[k] = 0;
+        other[k] = 0;
+    }
+}
+
+/* Slots of a block: as many rows as its fullest grain needs. */
+__kernel void table_widths(__global const uint *restrict slot_count, __global uint *restrict width)
+{
+    int block = get_global_id(0);
+    uint most = 0;
+    for (int n = 0; n < CLAST_BLOCK; n++)
+        most = max(most, slot_count[block * CLAST_BLOCK + n]);
+    width[block] = most * CLAST_BLOCK;
+}
+
+__kernel void table_slots(__global const int *restrict owner, __global const int *restrict other, __global const uint *restrict slot_offset,
+                          __global uint *restrict cursor, __global int *restrict slots, const int pair_count, const int wall_base,
+                          const int record_count)
+{
+    int k = get_global_id(0);
+    if (k >= record_count || (k >= pair_count && k < wall_base))
+        return;
+    int i = owner[k];
+    uint row = atomic_inc((volatile __global uint *)&cursor[i]);
+    slots[slot_offset[i / CLAST_BLOCK] + row * CLAST_BLOCK + i % CLAST_BLOCK] = k + 1;
+    if (k >= pair_count)
+        return;
+    int j = other[k];
+    row = atomic_inc((volatile __global uint *)&cursor[j]);
+    slots[slot_offset[j / CLAST_BLOCK] + row * CLAST_BLOCK + j % CLAST_BLOCK] = -(k + 1);
+}
+
+/* What a slot is sorted by: the partner's permanent id; faces of walls after all grains. */
+INLINE long table_partner(int entry, int wall_base, __global const int *restrict owner, __global const int *restrict other,
+                          __global const int *restrict id)
+{
+    int k = (entry > 0 ? entry : -entry) - 1;
+    if (k >= wall_base)
+        return (1L << 32) + other[k];
+    return id[entry > 0 ? other[k] : owner[k]];
+}
+
+__kernel void table_sort_slots(const clast_launch launch, __global const int *restrict owner, __global const int *restrict other,
+                               __global const int *restrict id, __global const uint *restrict slot_offset,
+                               __global const uint *restrict slot_count, __global int *restrict slots, const int wall_base)
+{
+    int i = get_global_id(0);
+    if (i >= launch.particle_count)
+        return;
+    uint base = slot_offset[i / CLAST_BLOCK] + i % CLAST_BLOCK;
+    for (uint a = 1; a < slot_count[i]; a++) {
+        int moved = slots[base + a * CLAST_BLOCK];
+        long key = table_partner(moved, wall_base, owner, other, id);
+        uint b = a;
+        for (; b > 0 && table_partner(slots[base + (b - 1) * CLAST_BLOCK], wall_base, owner, other, id) > key; b--)
+            slots[base + b * CLAST_BLOCK] = slots[base + (b - 1) * CLAST_BLOCK];
+        slots[base + b * CLAST_BLOCK] = moved;
+    }
+}
+
+/* For every new record the old one of the same two partners: index + 1, negative where the pair has changed its owner, 0 where there was
+ * none. `order` leads from new to old indices. */
+__kernel void table_match(__global const int *restrict owner, __global const int *restrict other, __global const int *restrict order,
+                          __global const int *restrict old_owner, __global const int *restrict old_other,
+                          __global const uint *restrict old_slot_offset, __global const int *restrict old_slots, __global int *restrict match,
+                          const int pair_count, const int wall_base, const int record_count, const int old_wall_base)
+{
+    int k = get_global_id(0);
+    if (k >= record_count)
+        return;
+    match[k] = 0;
+    if (k >= pair_count && k < wall_base)
+        return;
+    bool wall = k >= wall_base;
+    int i = order[owner[k]], wanted = wall ? other[k] : order[other[k]];
+    uint first = old_slot_offset[i / CLAST_BLOCK], end = old_slot_offset[i / CLAST_BLOCK + 1];
+    for (uint s = first + i % CLAST_BLOCK; s < end; s += CLAST_BLOCK) {
+        int entry = old_slots[s];
+        if (entry == 0)
+            return;
+        int a = (entry > 0 ? entry : -entry) - 1;
+        if ((a >= old_wall_base) != wall)
+            continue;
+        int partner = entry > 0 ? old_other[a] : old_owner[a];
+        if (partner == wanted) {
+            match[k] = entry;
+            return;
+        }
+    }
+}
+
+/* Moves one component of a history; `odd` quantities change sign with the owner. */
+__kernel void table_carry(__global const int *restrict match, __global const real *restrict from, __global real *restrict to,
+                          const int record_count, const int odd)
+{
+    int k = get_global_id(0);
+    if (k >= record_count)
+        return;
+    int m = match[k];
+    real value = m == 0 ? R(0.0) : from[(m > 0 ? m : -m) - 1];
+    to[k] = odd && m < 0 ? -value : value;
+}
