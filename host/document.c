@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A scene needs eight levels; a walker that recurses must not be led into a hundred thousand. */
+/* A scene needs eight levels; nobody should be led into a hundred thousand. */
 #define NESTING_MAX 32
 
 static void begin_message(char *out, size_t size, const char *path, bool with_place, yaml_mark_t mark)
@@ -25,6 +25,8 @@ static status parse_failure(const yaml_parser_t *parser, const char *path, bool 
     if (parser->error == YAML_READER_ERROR)
         return fail(why, STATUS_BAD_INPUT, "%s: not a text file in UTF-8: %s at byte %zu", path, problem, parser->problem_offset);
     begin_message(at, sizeof at, path, with_place, parser->problem_mark);
+    if (strstr(problem, "cannot start any token"))
+        return fail(why, STATUS_BAD_INPUT, "%s: not valid YAML: %s (a tab? indent with spaces; or a text that needs quotes)", at, problem);
     if (!parser->context)
         return fail(why, STATUS_BAD_INPUT, "%s: not valid YAML: %s", at, problem);
     if (!with_place)
@@ -33,103 +35,119 @@ static status parse_failure(const yaml_parser_t *parser, const char *path, bool 
                 parser->context_mark.line + 1, parser->context_mark.column + 1);
 }
 
+/* One pass over the events, before the tree is built: depth, for a parser whose time grows with the square of it; anchors, for a tree
+ * that no alias can make larger than the file, or endless; and what a scene has no use for. */
 typedef struct inspection {
-    yaml_document_t *yaml;
-    char *seen; /* by node id */
     const char *path;
     bool with_place;
+    int documents, depth;
+    bool mapping[NESTING_MAX], key_next[NESTING_MAX];
     failure *why;
 } inspection;
 
-static status inspect_failure(const inspection *in, const yaml_node_t *node, const char *message)
+static status inspect_failure(const inspection *in, const yaml_event_t *event, const char *message)
 {
     char at[1024];
-    begin_message(at, sizeof at, in->path, in->with_place, node->start_mark);
+    begin_message(at, sizeof at, in->path, in->with_place, event->start_mark);
     return fail(in->why, STATUS_BAD_INPUT, "%s: %s", at, message);
 }
 
-static status inspect_scalar(const inspection *in, const yaml_node_t *node)
+/* Counts a node as a key or a value of the mapping around it; says whether it is a key. */
+static bool take_place(inspection *in)
 {
-    if (strcmp((const char *)node->tag, YAML_STR_TAG) != 0)
-        return inspect_failure(in, node, "tags (`!...`) have no meaning in a scene; remove the tag");
-    if (strlen((const char *)node->data.scalar.value) != node->data.scalar.length)
-        return inspect_failure(in, node, "a text must not hold a zero byte");
+    if (in->depth == 0 || !in->mapping[in->depth - 1])
+        return false;
+    bool key = in->key_next[in->depth - 1];
+    in->key_next[in->depth - 1] = !key;
+    return key;
+}
+
+static status inspect_node(const inspection *in, const yaml_event_t *event, const yaml_char_t *anchor, const yaml_char_t *tag)
+{
+    if (anchor)
+        return inspect_failure(in, event, "anchors and aliases (`&name`, `*name`) are not allowed in a scene; write the value out");
+    if (tag)
+        return inspect_failure(in, event, "tags (`!...`) have no meaning in a scene; remove the tag");
     return STATUS_OK;
 }
 
-/* Every node is reached once, so that no alias can make the tree larger than the file, or endless. */
-static status inspect(const inspection *in, int id, int depth)
+static status inspect_scalar(inspection *in, const yaml_event_t *event)
 {
-    const yaml_node_t *node = yaml_document_get_node(in->yaml, id);
-    if (in->seen[id])
-        return inspect_failure(in, node, "anchors and aliases (`&name`, `*name`) are not allowed in a scene; write the value out");
-    in->seen[id] = 1;
-    if (depth > NESTING_MAX)
-        return inspect_failure(in, node, "nested too deeply; no key of a scene needs more than a few levels");
-    if (node->type == YAML_SCALAR_NODE)
-        return inspect_scalar(in, node);
-    if (strcmp((const char *)node->tag, node->type == YAML_SEQUENCE_NODE ? YAML_SEQ_TAG : YAML_MAP_TAG) != 0)
-        return inspect_failure(in, node, "tags (`!...`) have no meaning in a scene; remove the tag");
-    if (node->type == YAML_SEQUENCE_NODE) {
-        for (const yaml_node_item_t *i = node->data.sequence.items.start; i < node->data.sequence.items.top; i++)
-            TRY(inspect(in, *i, depth + 1));
+    take_place(in);
+    if (strlen((const char *)event->data.scalar.value) != event->data.scalar.length)
+        return inspect_failure(in, event, "a text must not hold a zero byte");
+    return inspect_node(in, event, event->data.scalar.anchor, event->data.scalar.tag);
+}
+
+static status inspect_start(inspection *in, const yaml_event_t *event)
+{
+    bool mapping = event->type == YAML_MAPPING_START_EVENT;
+    if (mapping)
+        TRY(inspect_node(in, event, event->data.mapping_start.anchor, event->data.mapping_start.tag));
+    else
+        TRY(inspect_node(in, event, event->data.sequence_start.anchor, event->data.sequence_start.tag));
+    if (take_place(in))
+        return inspect_failure(in, event, "a key must be one word");
+    if (in->depth == NESTING_MAX)
+        return inspect_failure(in, event, "nested too deeply; no key of a scene needs more than a few levels");
+    in->mapping[in->depth] = mapping;
+    in->key_next[in->depth++] = mapping;
+    return STATUS_OK;
+}
+
+static status inspect_event(inspection *in, const yaml_event_t *event)
+{
+    switch (event->type) {
+    case YAML_DOCUMENT_START_EVENT:
+        return in->documents++ ? inspect_failure(in, event, "a second YAML document begins here; a scene is one document") : STATUS_OK;
+    case YAML_ALIAS_EVENT:
+        return inspect_node(in, event, event->data.alias.anchor, NULL);
+    case YAML_SCALAR_EVENT:
+        return inspect_scalar(in, event);
+    case YAML_SEQUENCE_START_EVENT:
+    case YAML_MAPPING_START_EVENT:
+        return inspect_start(in, event);
+    case YAML_SEQUENCE_END_EVENT:
+    case YAML_MAPPING_END_EVENT:
+        in->depth--;
+        return STATUS_OK;
+    default:
         return STATUS_OK;
     }
-    for (const yaml_node_pair_t *p = node->data.mapping.pairs.start; p < node->data.mapping.pairs.top; p++) {
-        const yaml_node_t *key = yaml_document_get_node(in->yaml, p->key);
-        if (key->type != YAML_SCALAR_NODE)
-            return inspect_failure(in, key, "a key must be one word");
-        TRY(inspect(in, p->key, depth + 1));
-        TRY(inspect(in, p->value, depth + 1));
-    }
-    return STATUS_OK;
 }
 
-static status inspect_all(yaml_document_t *yaml, const char *path, bool with_place, failure *why)
+static status inspect(const char *text, size_t length, const char *path, bool with_place, failure *why)
 {
-    if (!yaml_document_get_root_node(yaml))
-        return fail(why, STATUS_BAD_INPUT, "%s: holds no YAML; a scene begins with keys such as `materials:`", path);
-    char *seen = calloc((size_t)(yaml->nodes.top - yaml->nodes.start) + 1, 1);
-    if (!seen)
+    yaml_parser_t parser;
+    yaml_event_t event;
+    inspection in = {.path = path, .with_place = with_place, .why = why};
+    if (!yaml_parser_initialize(&parser))
         return fail(why, STATUS_ERROR, "%s: out of memory", path);
-    const inspection in = {yaml, seen, path, with_place, why};
-    status result = inspect(&in, 1, 0);
-    free(seen);
-    return result;
-}
-
-static status refuse_second_document(yaml_parser_t *parser, const char *path, bool with_place, failure *why)
-{
-    yaml_document_t next;
-    if (!yaml_parser_load(parser, &next))
-        return parse_failure(parser, path, with_place, why);
-    const yaml_node_t *root = yaml_document_get_root_node(&next);
+    yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
     status result = STATUS_OK;
-    if (root) {
-        char at[1024];
-        begin_message(at, sizeof at, path, with_place, root->start_mark);
-        result = fail(why, STATUS_BAD_INPUT, "%s: a second YAML document begins here; a scene is one document", at);
+    for (bool last = false; !last && result == STATUS_OK;) {
+        if (!yaml_parser_parse(&parser, &event)) {
+            result = parse_failure(&parser, path, with_place, why);
+            break;
+        }
+        last = event.type == YAML_STREAM_END_EVENT;
+        result = inspect_event(&in, &event);
+        yaml_event_delete(&event);
     }
-    yaml_document_delete(&next);
+    yaml_parser_delete(&parser);
+    if (result == STATUS_OK && in.documents == 0)
+        result = fail(why, STATUS_BAD_INPUT, "%s: holds no YAML; a scene begins with keys such as `materials:`", path);
     return result;
 }
 
 status document_parse(yaml_document_t *out, const char *text, size_t length, const char *path, bool with_place, failure *why)
 {
+    TRY(inspect(text, length, path, with_place, why));
     yaml_parser_t parser;
     if (!yaml_parser_initialize(&parser))
         return fail(why, STATUS_ERROR, "%s: out of memory", path);
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
-    status result = STATUS_OK;
-    bool loaded = yaml_parser_load(&parser, out);
-    if (!loaded)
-        result = parse_failure(&parser, path, with_place, why);
-    if (result == STATUS_OK)
-        result = inspect_all(out, path, with_place, why);
-    if (result == STATUS_OK)
-        result = refuse_second_document(&parser, path, with_place, why);
-    if (loaded && result != STATUS_OK)
-        yaml_document_delete(out);
+    status result = yaml_parser_load(&parser, out) ? STATUS_OK : parse_failure(&parser, path, with_place, why);
     yaml_parser_delete(&parser);
     return result;
 }

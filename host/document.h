@@ -16,8 +16,8 @@ typedef struct document {
     int *set_first;      /* first node that each of them brought */
 } document;
 
-/* Reads the text and applies the settings in order. Rejects what a scene has no use for and what could hurt a walker: anchors and
- * aliases, tags, keys that are not words, more than one document, deep nesting. */
+/* Reads the text and applies the settings in order. Rejects what a scene has no use for: anchors and aliases, tags, keys
+ * that are not words, more than one document, deep nesting. */
 status document_load(document *d, const char *text, size_t length, const char *path, int set_count, char *const *sets, failure *why);
 void document_free(document *d);
 /* The document as YAML text, or NULL when out of memory; uses the document up. */
@@ -46,7 +46,7 @@ const char *document_describe(document *d, int node, char *text, size_t size);
 
 /* Applies one `path=value` (host/document_set.c). */
 status document_set(document *d, const char *setting, failure *why);
-/* Parses one YAML document; `what` begins its messages and `shift` says whether lines count. Used for the scene and for set values. */
+/* Parses one YAML document, a scene or the value of a setting; messages begin with `path`, and with line and column when with_place. */
 status document_parse(yaml_document_t *out, const char *text, size_t length, const char *path, bool with_place, failure *why);
 
 #endif

@@ -81,7 +81,7 @@ typedef struct particle_group {
     char *name;
     int material;
     generator generator;
-    int64_t count;
+    int64_t count; /* random: asked for; list: written; else 0, as only the generator knows it */
     radius_spec radius_m;
     bool region_given;
     double region_low_m[3], region_high_m[3];

@@ -23,7 +23,7 @@ static status check_body_names(reader *r)
     for (int k = 0; k < s->material_count; k++) {
         int node = document_at(r->document, "materials[%d].name", k);
         if (strcmp(s->material[k].name, "default") == 0)
-            return document_fail(r->document, node, r->why, "a material cannot be called `default`, which means every pair in `between`");
+            return document_fail(r->document, node, r->why, "a material cannot be called `default`; in `between` that means every pair");
         for (int j = 0; j < k; j++)
             if (strcmp(s->material[j].name, s->material[k].name) == 0)
                 return name_taken(r, node, s->material[k].name, "material", s->material[j].at);
@@ -31,7 +31,7 @@ static status check_body_names(reader *r)
     for (int k = 0; k < s->wall_count; k++) {
         int node = document_at(r->document, "walls[%d].name", k);
         if (strcmp(s->wall[k].name, "default") == 0)
-            return document_fail(r->document, node, r->why, "a wall cannot be called `default`, which means every pair in `between`");
+            return document_fail(r->document, node, r->why, "a wall cannot be called `default`; in `between` that means every pair");
         for (int j = 0; j < s->material_count; j++)
             if (strcmp(s->material[j].name, s->wall[k].name) == 0)
                 return name_taken(r, node, s->wall[k].name, "material", s->material[j].at);
@@ -197,12 +197,15 @@ static status check_stages(reader *r)
     return STATUS_OK;
 }
 
-static status check_particle_number(reader *r)
+static status check_particles(reader *r)
 {
     const scene *s = r->scene;
     double sum = 0.0;
     for (int k = 0; k < s->group_count; k++) {
         const particle_group *group = &s->group[k];
+        if (group->generator == GENERATOR_RANDOM && !group->region_given && !s->domain.given)
+            return document_fail(r->document, document_at(r->document, "particles[%d]", k), r->why,
+                                 "a group of random particles needs a `region`, or the scene a `domain`");
         sum += group->generator == GENERATOR_LATTICE ? (double)group->counts[0] * (double)group->counts[1] * (double)group->counts[2]
                                                      : (double)group->count;
         if (sum > PARTICLES_MAX)
@@ -322,7 +325,7 @@ status scene_check(reader *r)
     TRY(check_body_names(r));
     TRY(check_other_names(r));
     TRY(check_stages(r));
-    TRY(check_particle_number(r));
+    TRY(check_particles(r));
     TRY(check_interactions(r));
     TRY(check_changes_once(r));
     TRY(check_normal_present(r));

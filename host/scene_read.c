@@ -35,13 +35,6 @@ static void fill_defaults(scene *s)
         if (!s->stage[k].name)
             s->stage[k].name = scene_copy(name);
     }
-    for (int k = 0; k < s->group_count; k++) {
-        particle_group *group = &s->group[k];
-        if (group->generator == GENERATOR_LATTICE)
-            group->count = group->counts[0] * group->counts[1] * group->counts[2];
-        else if (group->generator == GENERATOR_CSV || group->generator == GENERATOR_RESULT)
-            group->count = 0; /* known when the file is read */
-    }
 }
 
 static status read_document(document *d, const char *path, scene *s, failure *why)

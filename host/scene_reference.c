@@ -49,6 +49,8 @@ static void write_default(FILE *page, const parameter *row)
         write_cell(page, row->shown);
     else if (row->fallback && row->fallback[0])
         fprintf(page, "`%s`", row->fallback);
+    else if (row->type == PARAMETER_SECTION)
+        fputs("as below", page);
     else
         fputs("none", page);
 }

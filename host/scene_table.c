@@ -19,9 +19,10 @@ static const parameter domain_rows[] = {
 const section domain_section = {.name = "domain", .doc = "The box that holds the particles. Without it space is unbounded.", .row = domain_rows,
                                 .finish = finish_domain};
 
+/* For the reference alone: read_effects makes its own rows, which hold the law's options too. */
 static const parameter effect_rows[] = {
-    {.key = "slot", .type = PARAMETER_TEXT, .required = true, .doc = "the slot that the law fills"},
-    {.key = "law", .type = PARAMETER_TEXT, .required = true, .doc = "the law"},
+    {.key = "slot", .type = PARAMETER_OTHER, .form = "name of a slot", .required = true, .doc = "the slot that the law fills"},
+    {.key = "law", .type = PARAMETER_OTHER, .form = "name of a law", .required = true, .doc = "the law"},
     {.key = "name", .type = PARAMETER_NAME, .doc = "a name, where a slot takes several entries", AT(effect, name)},
     {0},
 };
@@ -56,7 +57,7 @@ static const parameter region_rows[] = {
     {.key = "high_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, AT(particle_group, region_high_m), .doc = "upper corner"},
     {0},
 };
-const section region_section = {.name = "region", .doc = "A box that holds the spheres of a group as a whole.", .row = region_rows,
+const section region_section = {.name = "region", .doc = "A box that holds whole spheres; it wraps where it spans a periodic direction.", .row = region_rows,
                                 .finish = finish_region};
 
 static const parameter item_rows[] = {
@@ -115,7 +116,7 @@ static const parameter group_rows[] = {
      AT(particle_group, radius_m), .form = "number or radius distribution", .doc = "radius"},
     {.key = "radius_m", .type = PARAMETER_OTHER, .read = read_radius, .unit = "m", POSITIVE, .only = "csv", AT(particle_group, radius_m),
      .form = "number or radius distribution", .doc = "radius, where the table has no such column"},
-    {.key = "region", .type = PARAMETER_SECTION, .section = &region_section, .required = true, .only = "random",
+    {.key = "region", .type = PARAMETER_SECTION, .section = &region_section, .only = "random", .shown = "the domain",
      .given = offsetof(particle_group, region_given), .doc = "where the particles lie"},
     {.key = "lattice", .type = PARAMETER_CHOICE, .choices = "simple_cubic|hexagonal|triangular", .fallback = "simple_cubic", .only = "lattice",
      AT(particle_group, lattice),
@@ -235,7 +236,8 @@ const section change_section = {.name = "stage change", .doc = "What changes at 
 
 static const parameter stage_rows[] = {
     {.key = "name", .type = PARAMETER_NAME, .shown = "stage1, stage2, ...", AT(scene_stage, name), .doc = "name of the stage"},
-    {.key = "until", .type = PARAMETER_SECTION, .section = &until_section, .required = true, .doc = "when the stage ends: `time_s`, `steps`, `rest` or `rest_j`"},
+    {.key = "until", .type = PARAMETER_SECTION, .section = &until_section, .required = true,
+     .doc = "when the stage ends: `time_s`, `steps`, `rest` or `rest_j`"},
     {.key = "step_s", .type = PARAMETER_NUMBER, .unit = "s", POSITIVE, .word = "auto", .fallback = "auto", AT(scene_stage, step_s),
      .doc = "time step"},
     {.key = "allow_unstable_step", .type = PARAMETER_FLAG, .fallback = "false", AT(scene_stage, allow_unstable_step),
