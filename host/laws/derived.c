@@ -26,7 +26,7 @@ const law law_motion_groups = {
     .source = "",
     .kernel_file = "effect/motion_groups.cl",
     .pair_fields = {&field_mover},
-    .particle_fields = {&field_mover},
+    .particle_fields = {&field_mover, &field_movers},
 };
 
 const law law_rotation_spin = {
@@ -45,6 +45,7 @@ const law law_walls_planes = {
     .doc = "Infinite planes, at rest or moving.",
     .source = "TM Remark 1",
     .kernel_file = "effect/walls_planes.cl",
+    .pair_fields = {&field_faces},
 };
 
 const law law_walls_finite = {
@@ -53,6 +54,7 @@ const law law_walls_finite = {
     .doc = "Planes, rectangles and discs, at rest or moving; a shared edge gives one contact.",
     .source = "TM Remark 1",
     .kernel_file = "effect/walls_finite.cl",
+    .pair_fields = {&field_faces},
 };
 
 const law law_orientation_quaternion = {

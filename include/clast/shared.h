@@ -66,10 +66,11 @@ typedef struct clast_face {
     clast_i32 spare;
 } clast_face;
 
-/* A prescribed motion at one step: the displacement x -> pivot + R (x - pivot) + shift over the step, and the velocity field at its start. */
+/* A prescribed motion over one step: x -> pivot + R (x - pivot) + shift; at its end the velocity is velocity + spin x (x - pivot_end). */
 typedef struct clast_mover {
     clast_f64 shift[3];
     clast_f64 pivot[3];
+    clast_f64 pivot_end[3];
     clast_f64 axis[3];
     clast_f64 sine, versine; /* of the angle turned in the step: sin, 1 - cos */
     clast_f64 velocity[3];

@@ -1,6 +1,7 @@
 /* motion: grains of some groups are held or moved as prescribed. Such a grain counts as infinitely heavy. */
 #define MOTION_PAIR_FIELDS(READ, WRITE) READ(int, mover)
-#define MOTION_PARTICLE_FIELDS(READ, WRITE) READ(int, mover)
+#define MOTION_PARTICLE_FIELDS(READ, WRITE) READ(int, mover) READ(clast_mover, movers)
+#define MOTION_ROW(launch) (movers + (launch)->pose_row * (launch)->mover_count)
 #define MOTION_GRAIN(i) mover[i]
 
 INLINE real motion_mass(int mover, real mass)
@@ -12,11 +13,6 @@ INLINE real motion_mass(int mover, real mass)
 INLINE real motion_overlap(int mover_i, int mover_j, real overlap)
 {
     return mover_i >= 0 && mover_j >= 0 ? R(0.0) : overlap;
-}
-
-INLINE bool motion_is_free(int mover)
-{
-    return mover < 0;
 }
 
 INLINE vec3 motion_position(__global const clast_mover *movers, int mover, vec3 free, vec3 start)
@@ -35,7 +31,7 @@ INLINE vec3 motion_velocity(__global const clast_mover *movers, int mover, vec3 
     if (mover < 0)
         return free;
     clast_mover m = movers[mover];
-    return add(from3(m.velocity), cross3(from3(m.spin), sub(x, from3(m.pivot))));
+    return add(from3(m.velocity), cross3(from3(m.spin), sub(x, from3(m.pivot_end))));
 }
 
 INLINE vec3 motion_spin(__global const clast_mover *movers, int mover, vec3 free)

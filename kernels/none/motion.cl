@@ -1,6 +1,7 @@
 /* motion: every grain is free. */
 #define MOTION_PAIR_FIELDS(READ, WRITE)
 #define MOTION_PARTICLE_FIELDS(READ, WRITE)
+#define MOTION_ROW(launch) ((__global const clast_mover *)0)
 #define MOTION_GRAIN(i) (-1)
 
 INLINE real motion_mass(int mover, real mass)
@@ -14,12 +15,6 @@ INLINE real motion_overlap(int mover_i, int mover_j, real overlap)
     (void)mover_i;
     (void)mover_j;
     return overlap;
-}
-
-INLINE bool motion_is_free(int mover)
-{
-    (void)mover;
-    return true;
 }
 
 INLINE vec3 motion_position(__global const clast_mover *movers, int mover, vec3 free, vec3 start)

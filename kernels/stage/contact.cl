@@ -9,11 +9,10 @@
 #define PAIR_PASS PAIR_FIELDS(PASS, PASS)
 
 /* What follows from normal, overlap and the two bodies. */
-INLINE void contact_complete(contact *c, real distance)
+INLINE void contact_complete(contact *c)
 {
     c->contact_radius = sqrt(c->radius_eff * c->overlap);
     c->inertia_root = sqrt(c->mass_eff * c->contact_radius);
-    (void)distance;
 }
 
 INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR_DECLARE)
@@ -46,7 +45,7 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     vec3 across = add_scaled(u, -c->approach, c->n);
     c->turn = scale(-inverse, cross3(c->n, u));
     c->slip = add(across, cross3(add_scaled(scale(c->arm_i, c->spin_i), c->arm_j, c->spin_j), c->n));
-    contact_complete(c, distance);
+    contact_complete(c);
 }
 
 INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_touch *touch PAIR_DECLARE)
@@ -70,7 +69,7 @@ INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_
     vec3 u = sub(v, touch->velocity);
     c->approach = dot3(u, c->n);
     c->slip = add(add_scaled(u, -c->approach, c->n), cross3(scale(c->arm_i, c->spin_i), c->n));
-    contact_complete(c, touch->distance);
+    contact_complete(c);
 }
 
 typedef struct contact_state {

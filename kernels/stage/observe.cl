@@ -127,6 +127,68 @@ __kernel void limit_particles(const clast_launch launch, __global const uint *re
     partial[2 * chunk + 1] = turning;
 }
 
+/* The contact to expect between two bodies of a class: that of an impact at `speed`, or under `weight`, whichever is deeper.
+ * result: overlap (m), limits of the normal and of the turning modes (s), duration of the impact without damping (s). */
+#define EXPECTED_BISECTIONS 200
+#define EXPECTED_POINTS 400
+
+INLINE void expected_at(contact *c, real overlap)
+{
+    c->overlap = overlap;
+    contact_complete(c);
+}
+
+__kernel void limit_expected(__global const real *restrict contact_constants, __global double *restrict result, const int class, const double radius_i,
+                             const double radius_j, const double mass_i, const double mass_j, const double speed, const double weight)
+{
+    contact c;
+    bool wall = mass_j <= 0.0;
+    c.radius_i = (real)radius_i;
+    c.radius_j = wall ? c.radius_i : (real)radius_j;
+    c.mass_i = (real)mass_i;
+    c.mass_j = wall ? R(1e30) : (real)mass_j;
+    c.radius_eff = wall ? c.radius_i : c.radius_i * c.radius_j / (c.radius_i + c.radius_j);
+    c.mass_eff = c.mass_i * c.mass_j / (c.mass_i + c.mass_j);
+    c.approach = R(0.0);
+    c.class = class;
+    c.value = contact_constants + class * CONTACT_CONSTANTS;
+    c.dt = R(0.0);
+    real energy = R(0.5) * c.mass_eff * (real)speed * (real)speed, impact_low = R(0.0), impact_high = c.radius_eff;
+    real rest_low = R(0.0), rest_high = c.radius_eff;
+    for (int n = 0; n < EXPECTED_BISECTIONS; n++) {
+        real middle = R(0.5) * (impact_low + impact_high);
+        response out;
+        expected_at(&c, middle);
+        bool deep = normal_energy(&c) > energy;
+        impact_high = deep ? middle : impact_high;
+        impact_low = deep ? impact_low : middle;
+        middle = R(0.5) * (rest_low + rest_high);
+        expected_at(&c, middle);
+        normal_force(&c, &out);
+        deep = out.normal > (real)weight;
+        rest_high = deep ? middle : rest_high;
+        rest_low = deep ? rest_low : middle;
+    }
+    /* time = 2 int_0^d dx/sqrt(v^2 - 2 E(x)/m*), x = d sin(phi) */
+    real duration = R(0.0);
+    for (int n = 0; n < EXPECTED_POINTS; n++) {
+        real phi = R(1.5707963267948966) * ((real)n + R(0.5)) / (real)EXPECTED_POINTS;
+        expected_at(&c, impact_high * sin(phi));
+        real left = (real)speed * (real)speed - R(2.0) * normal_energy(&c) / c.mass_eff;
+        duration += left > R(0.0) ? cos(phi) / sqrt(left) : R(0.0);
+    }
+    duration *= R(2.0) * impact_high * R(1.5707963267948966) / (real)EXPECTED_POINTS;
+    expected_at(&c, impact_high > rest_high ? impact_high : rest_high);
+    real inverse = R(1.0) / c.mass_eff;
+    mode a = normal_mode(&c), t = tangential_mode(&c), r = rolling_mode(&c);
+    real spin_i = R(1.0) / (R(0.4) * c.mass_i * c.radius_i * c.radius_i);
+    real spin_both = wall ? spin_i : spin_i + R(1.0) / (R(0.4) * c.mass_j * c.radius_j * c.radius_j);
+    result[0] = c.overlap;
+    result[1] = limit_step(a.stiffness * inverse, a.damping * inverse);
+    result[2] = limit_step(R(3.5) * t.stiffness * inverse + spin_both * r.stiffness, R(3.5) * t.damping * inverse + spin_both * r.damping);
+    result[3] = duration;
+}
+
 /* Guards, per chunk: first grain that is not a number, that moves too far in a step, that has left the domain (sorted indices; -1: none),
  * and the largest speed squared. Numbers are tested by their bits, so that no compiler option can lose the test. */
 INLINE bool guard_is_number(double x)

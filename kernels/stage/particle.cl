@@ -1,7 +1,7 @@
 /* The particle stage: gathers the contacts of a grain in slot order, adds what acts on the grain itself, and advances it. */
 #define PARTICLE_FIELDS(READ, WRITE)                                                                                              \
     READ(uint, slot_offset) READ(int, slots) READ(real, force) READ(real, radius) READ(real, mass) WRITE(real, position) WRITE(real, velocity)     \
-    READ(real, built_position) READ(clast_mover, movers) MOTION_PARTICLE_FIELDS(READ, WRITE) \
+    READ(real, built_position) MOTION_PARTICLE_FIELDS(READ, WRITE) \
     ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE)
 #define PARTICLE_DECLARE PARTICLE_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PARTICLE_PASS PARTICLE_FIELDS(PASS, PASS)
@@ -32,7 +32,7 @@ INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t P
     real m = mass[i], inertia = R(0.4) * m * r * r;
     int mover_i = MOTION_GRAIN(i);
     vec3 x = LOAD3(position, ps, i), v = LOAD3(velocity, ps, i), w = ROTATION_LOAD(launch, i);
-    __global const clast_mover *row = movers + launch->pose_row * launch->mover_count;
+    __global const clast_mover *row = MOTION_ROW(launch);
     f = body_force(add_scaled(f, m, from3(launch->gravity)), v, m);
     t = body_force(t, w, inertia);
     vec3 v1 = integrate_velocity(v, scale(R(1.0) / m, f), dt);

@@ -72,14 +72,14 @@ __kernel void table_order_cells(__global const uint *restrict cell_start, __glob
 }
 
 __kernel void table_permute_real(const clast_launch launch, __global const int *restrict order, __global const real *restrict from,
-                                 __global real *restrict to, const int components)
+                                 __global real *restrict to, const int first_component, const int components)
 {
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
     int o = order[i];
     for (int c = 0; c < components; c++)
-        AT(to, launch.particle_stride, c, i) = AT(from, launch.particle_stride, c, o);
+        AT(to, launch.particle_stride, c, i) = AT(from, launch.particle_stride, first_component + c, o);
 }
 
 __kernel void table_permute_int(const clast_launch launch, __global const int *restrict order, __global const int *restrict from,
@@ -267,14 +267,22 @@ __kernel void table_match(__global const int *restrict owner, __global const int
     }
 }
 
-/* Moves one component of a history; `odd` quantities change sign with the owner. */
-__kernel void table_carry(__global const int *restrict match, __global const real *restrict from, __global real *restrict to,
-                          const int record_count, const int odd)
+/* Moves one component of a history, which stands at an offset in both buffers; `odd` ones change sign with the owner. */
+__kernel void table_carry(__global const int *restrict match, __global const real *restrict from, __global real *restrict to, const long from_offset,
+                          const long to_offset, const int record_count, const int odd)
 {
     int k = get_global_id(0);
     if (k >= record_count)
         return;
     int m = match[k];
-    real value = m == 0 ? R(0.0) : from[(m > 0 ? m : -m) - 1];
-    to[k] = odd && m < 0 ? -value : value;
+    real value = m == 0 ? R(0.0) : from[from_offset + (m > 0 ? m : -m) - 1];
+    to[to_offset + k] = odd && m < 0 ? -value : value;
+}
+
+/* Index of every permanent id; -1 (set before) where the grain has left. */
+__kernel void table_where(const clast_launch launch, __global const int *restrict id, __global int *restrict where)
+{
+    int i = get_global_id(0);
+    if (i < launch.particle_count)
+        where[id[i]] = i;
 }
