@@ -110,6 +110,17 @@ status bed_list(const scene *s, int group, bed *b, failure *why)
     return STATUS_OK;
 }
 
+static status check_flat(const scene *s, const bed *b, int64_t i, int64_t index, failure *why)
+{
+    const char *const name[] = {"z", "vz", "wx", "wy"};
+    const double value[] = {b->position[i][2], b->velocity[i][2], b->spin[i][0], b->spin[i][1]};
+    for (int k = 0; k < 4; k++)
+        if (value[k] != 0.0)
+            return bed_refuse(s, b->group[i], why, "particle %" PRId64 " has %s = %g; in a scene of 2 dimensions that must be 0", index,
+                              name[k], value[k]);
+    return STATUS_OK;
+}
+
 static status check_numbers(const scene *s, const bed *b, int64_t i, int64_t index, failure *why)
 {
     int group = b->group[i];
@@ -128,10 +139,7 @@ static status check_numbers(const scene *s, const bed *b, int64_t i, int64_t ind
         return bed_refuse(s, group, why, "particle %" PRId64 " has radius %g m; it must be above 0 and finite", index, b->radius[i]);
     if (isinf(b->temperature[i]) || b->temperature[i] < 0.0)
         return bed_refuse(s, group, why, "particle %" PRId64 " has temperature %g K; it must be 0 or more", index, b->temperature[i]);
-    if (s->dimensions == 2 && b->position[i][2] != 0.0)
-        return bed_refuse(s, group, why, "particle %" PRId64 " has z = %g m; in a scene of 2 dimensions z must be 0", index,
-                          b->position[i][2]);
-    return STATUS_OK;
+    return s->dimensions == 2 ? check_flat(s, b, i, index, why) : STATUS_OK;
 }
 
 /* Wraps along periodic directions; along the others a centre on the face is still inside. */

@@ -102,30 +102,31 @@ static status check_sizes(const scene *s, int group, const packing *p, int64_t m
     return STATUS_OK;
 }
 
-/* `reached` is the fraction that the spheres could be brought to (0: not tried). */
+/* `reached` is the fraction that the spheres could be brought to (0: not tried). The advice keeps a little away from it. */
 static status refuse_fraction(const scene *s, int group, const packing *p, int64_t moving, double asked, double reached, failure *why)
 {
-    const char *size = p->dimensions == 2 ? "area" : "volume", *unit = p->dimensions == 2 ? "m2" : "m3";
-    double sure = p->dimensions == 2 ? sure_fraction_2d : sure_fraction_3d;
-    double fits = reached > 0.0 ? fmin(reached, sure) : sure;
+    bool flat = p->dimensions == 2;
+    double sure = flat ? sure_fraction_2d : sure_fraction_3d;
+    double fits = 0.99 * (reached > 0.0 ? fmin(reached, sure) : sure);
     return bed_refuse(s, group, why,
-                      "%" PRId64 " particles are a %s fraction of %.3f of their region (%.6g %s), which cannot be reached without overlap; ask for at most "
-                      "%" PRId64 " particles (a fraction of %.3f) or for a region of at least %.6g %s",
-                      moving, size, asked, region_size(p), unit, (int64_t)fmax(1.0, floor(0.99 * (double)moving * fits / asked)), 0.99 * fits,
-                      region_size(p) * asked / (0.99 * fits), unit);
+                      "%" PRId64 " particles are %s fraction of %.3f of their region (%.6g %s), which cannot be reached without overlap; ask "
+                      "for at most %" PRId64 " particles (a fraction of %.3f) or for a region of at least %.6g %s",
+                      moving, flat ? "an area" : "a volume", asked, region_size(p), flat ? "m2" : "m3",
+                      (int64_t)fmax(1.0, floor((double)moving * fits / asked)), fits, region_size(p) * asked / fits, flat ? "m2" : "m3");
 }
 
 static status pack(const scene *s, int group, packing *p, int64_t moving, failure *why)
 {
+    bool flat = p->dimensions == 2, overlap = false;
     TRY(check_sizes(s, group, p, moving, why));
     double asked = grains_size(p, moving) / region_size(p), reached = 1.0;
-    if (asked > (p->dimensions == 2 ? hopeless_fraction_2d : hopeless_fraction_3d))
+    if (asked > (flat ? hopeless_fraction_2d : hopeless_fraction_3d))
         return refuse_fraction(s, group, p, moving, asked, 0.0, why);
-    bool overlap = false;
-    if (!packing_insert(p, s->seed, (uint32_t)group, &overlap) || (overlap && !packing_relax(p, &reached)))
+    double sure = flat ? sqrt(sure_fraction_2d / asked) : cbrt(sure_fraction_3d / asked);
+    if (!packing_insert(p, s->seed, (uint32_t)group, &overlap) || (overlap && !packing_relax(p, sure, &reached)))
         return fail(why, STATUS_ERROR, "out of memory while packing %" PRId64 " particles", moving);
     if (reached < 1.0)
-        return refuse_fraction(s, group, p, moving, asked, asked * (p->dimensions == 2 ? reached * reached : reached * reached * reached), why);
+        return refuse_fraction(s, group, p, moving, asked, asked * reached * reached * (flat ? 1.0 : reached), why);
     return STATUS_OK;
 }
 

@@ -11,8 +11,10 @@
 /* Spheres are pushed apart until they have this much more than their radii: the last small overlaps vanish slowly (the closer to jamming,
  * the slower), those beyond a few percent fast. */
 static const double inflation = 1.01;
-/* A sphere may move by this fraction of its radius before the list of neighbours is made anew. */
-static const double skin = 0.25;
+/* A sphere may move by this fraction of its radius before the list of neighbours is made anew. Whether it has is looked at every few passes
+ * only: a list that is somewhat out of date delays the end, and before the end a fresh one decides. */
+static const double skin = 0.35;
+#define LIST_CHECK_PASSES 4
 /* Pushing further than needed gets there in fewer passes, like the over-relaxation of a linear system. */
 static const double over_relaxation = 1.7;
 
@@ -296,10 +298,10 @@ static bool relax_to(relaxation *r, double scale, int passes, bool *clear)
     double before = INFINITY;
     *clear = false;
     for (int pass = 0; pass < passes; pass++) {
-        if (list_is_stale(r) && !list_pairs(r))
+        if (pass % LIST_CHECK_PASSES == 0 && list_is_stale(r) && !list_pairs(r))
             return false;
         double overlap = push_apart(r, scale * inflation, scale, pass & 1);
-        if (list_is_stale(r) && !list_pairs(r))
+        if (overlap == 0.0 && list_is_stale(r) && !list_pairs(r))
             return false;
         if (overlap == 0.0 && is_clear(r, scale)) {
             *clear = true;
@@ -314,7 +316,7 @@ static bool relax_to(relaxation *r, double scale, int passes, bool *clear)
     return true;
 }
 
-bool packing_relax(packing *p, double *reached)
+bool packing_relax(packing *p, double sure, double *reached)
 {
     relaxation r;
     bool clear = false, fits = relaxation_init(p, &r) && list_pairs(&r);
@@ -322,9 +324,9 @@ bool packing_relax(packing *p, double *reached)
     if (fits)
         fits = relax_to(&r, scale, 3000, &clear);
     /* What does not fit is shrunk until it does, to be able to say what would. */
-    while (fits && !clear && scale > 0.02) {
-        scale *= 0.99;
-        fits = relax_to(&r, scale, 200, &clear);
+    for (bool first = true; fits && !clear && scale > 0.02; first = false) {
+        scale = first && sure < 1.0 ? sure : 0.98 * scale;
+        fits = relax_to(&r, scale, 300, &clear);
     }
     if (fits)
         for (int64_t k = 0; k < p->count; k++)
