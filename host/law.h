@@ -43,6 +43,7 @@ typedef struct law_option {
 #define LAW_ARGUMENTS_MAX 8
 #define LAW_PARAMETERS_MAX 8
 #define LAW_PROPERTIES_MAX 8
+#define LAW_FILES_MAX 2
 
 typedef enum field_extent { PER_PARTICLE, PER_RECORD, PER_SCENE /* faces of walls, prescribed motions: the host keeps them */ } field_extent;
 typedef enum field_type { FIELD_REAL, FIELD_INT } field_type;
@@ -77,6 +78,7 @@ typedef struct law {
     const char *doc;         /* one sentence */
     const char *source;      /* paper and equation */
     const char *kernel_file; /* below kernels/ */
+    const char *more_files[LAW_FILES_MAX]; /* behind it, shared with other laws */
     law_option options[LAW_OPTIONS_MAX]; /* ends with a NULL key */
     const property *material_needs[LAW_PROPERTIES_MAX];
     const property *interaction_needs[LAW_PROPERTIES_MAX];

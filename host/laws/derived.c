@@ -44,7 +44,8 @@ const law law_walls_planes = {
     .slot = SLOT_WALLS,
     .doc = "Infinite planes, at rest or moving.",
     .source = "TM Remark 1",
-    .kernel_file = "effect/walls_planes.cl",
+    .kernel_file = "effect/walls_common.cl",
+    .more_files = {"effect/walls_planes.cl"},
     .pair_fields = {&field_faces},
 };
 
@@ -53,7 +54,8 @@ const law law_walls_finite = {
     .slot = SLOT_WALLS,
     .doc = "Planes, rectangles and discs, at rest or moving; a shared edge gives one contact.",
     .source = "TM Remark 1",
-    .kernel_file = "effect/walls_finite.cl",
+    .kernel_file = "effect/walls_common.cl",
+    .more_files = {"effect/walls_finite.cl"},
     .pair_fields = {&field_faces},
 };
 

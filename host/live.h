@@ -1,0 +1,27 @@
+/* Which law fills which slot in a scene stage, and what follows: the program's files and constants, the contact classes. */
+#ifndef CLAST_HOST_LIVE_H
+#define CLAST_HOST_LIVE_H
+#include "bed.h"
+#include "scene.h"
+
+/* NULL: the slot's none twin. */
+typedef struct live_laws {
+    const law *law[SLOT_COUNT];
+    const double *option[SLOT_COUNT];
+} live_laws;
+
+/* stage -1: the union over all stages, which decides what is allocated. */
+void live_laws_of(const scene *scene, const bed *bed, int stage, live_laws *out);
+/* Files of the program in order; returns their number (at most `max`). */
+int live_files(const live_laws *live, const char **files, int max);
+/* "#define" lines: options, places of the constants in a row, number of constants a class. */
+void live_constants(const live_laws *live, const scene *scene, char *text, size_t size);
+/* Constants a class. */
+int live_constant_count(const live_laws *live);
+/* Rows of contact classes: by material of the owner, then by the other's party (materials, then walls). */
+int live_class_count(const live_laws *live, const scene *scene);
+/* Fills rows x constants. */
+void live_class_constants(const live_laws *live, const scene *scene, int stage, double *out);
+bool live_uses(const live_laws *live, const field *field);
+
+#endif
