@@ -26,8 +26,13 @@ char *scene_copy(const char *text)
 
 parameter parameter_of_property(const property *p)
 {
-    return (parameter){.key = p->key, .type = PARAMETER_NUMBER, .unit = parameter_unit(p->key), .low = p->low, .high = p->high,
-                       .open_low = p->open_low, .doc = p->doc};
+    return (parameter){.key = p->key,
+                       .type = PARAMETER_NUMBER,
+                       .unit = parameter_unit(p->key),
+                       .low = p->low,
+                       .high = p->high,
+                       .open_low = p->open_low,
+                       .doc = p->doc};
 }
 
 static bool row_is_active(const parameter *row, const char *selected)
@@ -72,21 +77,20 @@ static status unknown_key(reader *r, const section *s, int key_node, const char 
             char where[256];
             words_list(row->only, where, sizeof where);
             return document_fail(r->document, key_node, r->why, "`%s` has no meaning in %s %s with `%s: %s`; it belongs to %s", key,
-                                 article(s->name), s->name,
-                                 s->selector, selected, where);
+                                 article(s->name), s->name, s->selector, selected, where);
         }
     int count = known_keys(s, selected, known);
     const char *nearest = word_nearest(key, known, count);
     if (nearest)
-        return document_fail(r->document, key_node, r->why, "unknown key `%.60s` in %s %s; did you mean `%s`?", key,
-                             article(s->name), s->name, nearest);
+        return document_fail(r->document, key_node, r->why, "unknown key `%.60s` in %s %s; did you mean `%s`?", key, article(s->name),
+                             s->name, nearest);
     char all[2048];
     size_t used = 0;
     all[0] = '\0';
     for (int k = 0; k < count && used + 80 < sizeof all; k++)
         used += (size_t)snprintf(all + used, sizeof all - used, "%s`%s`", k ? ", " : "", known[k]);
-    return document_fail(r->document, key_node, r->why, "unknown key `%.60s` in %s %s; its keys are %s", key, article(s->name),
-                         s->name, all);
+    return document_fail(r->document, key_node, r->why, "unknown key `%.60s` in %s %s; its keys are %s", key, article(s->name), s->name,
+                         all);
 }
 
 static status check_keys(reader *r, const section *s, int node, const char *selected)

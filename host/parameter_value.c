@@ -10,8 +10,12 @@
 static const struct {
     const char *suffix, *unit;
 } units[] = {
-    {"_kg_m3", "kg/m^3"}, {"_j_kgk", "J/(kg K)"}, {"_rad_s", "rad/s"}, {"_w_mk", "W/(m K)"}, {"_m_s2", "m/s^2"}, {"_m_s", "m/s"},
-    {"_n_m", "N/m"},      {"_rad", "rad"},        {"_pa", "Pa"},       {"_hz", "Hz"},        {"_m", "m"},        {"_s", "s"},
+    {"_kg_m3", "kg/m^3"}, {"_j_kgk", "J/(kg K)"},
+    {"_rad_s", "rad/s"},  {"_w_mk", "W/(m K)"},
+    {"_m_s2", "m/s^2"},   {"_m_s", "m/s"},
+    {"_n_m", "N/m"},      {"_rad", "rad"},
+    {"_pa", "Pa"},        {"_hz", "Hz"},
+    {"_m", "m"},          {"_s", "s"},
     {"_k", "K"},          {"_j", "J"},
 };
 
@@ -318,22 +322,38 @@ status parameter_value(reader *r, const parameter *row, int node, void *target)
 {
     void *store = (char *)target + row->offset;
     switch (row->type) {
-    case PARAMETER_NUMBER: return read_number_or_word(r, row, node, store);
-    case PARAMETER_INTEGER: return read_integer_or_word(r, row, node, store);
-    case PARAMETER_FLAG: return read_flag(r, row, node, store);
-    case PARAMETER_CHOICE: return read_stored_choice(r, row, node, store);
-    case PARAMETER_TEXT: return read_text(r, row, node, store);
-    case PARAMETER_NAME: return read_name(r, row, node, store);
-    case PARAMETER_VECTOR: return parameter_vector(r, row, node, store);
-    case PARAMETER_DIRECTION: return read_direction(r, row, node, store);
-    case PARAMETER_COUNTS: return read_counts(r, row, node, store);
-    case PARAMETER_NUMBERS: return parameter_numbers(r, row, node, store, (int *)((char *)target + row->count));
-    case PARAMETER_WORDS: return read_words(r, row, node, target);
-    case PARAMETER_FLAGS: return read_flags(r, row, node, store);
-    case PARAMETER_SECTION: return parameter_section(r, row->section, node, store);
-    case PARAMETER_LIST: return read_list(r, row, node, target);
-    case PARAMETER_OTHER: return row->read(r, row, node, target);
-    case PARAMETER_LATER: break;
+    case PARAMETER_NUMBER:
+        return read_number_or_word(r, row, node, store);
+    case PARAMETER_INTEGER:
+        return read_integer_or_word(r, row, node, store);
+    case PARAMETER_FLAG:
+        return read_flag(r, row, node, store);
+    case PARAMETER_CHOICE:
+        return read_stored_choice(r, row, node, store);
+    case PARAMETER_TEXT:
+        return read_text(r, row, node, store);
+    case PARAMETER_NAME:
+        return read_name(r, row, node, store);
+    case PARAMETER_VECTOR:
+        return parameter_vector(r, row, node, store);
+    case PARAMETER_DIRECTION:
+        return read_direction(r, row, node, store);
+    case PARAMETER_COUNTS:
+        return read_counts(r, row, node, store);
+    case PARAMETER_NUMBERS:
+        return parameter_numbers(r, row, node, store, (int *)((char *)target + row->count));
+    case PARAMETER_WORDS:
+        return read_words(r, row, node, target);
+    case PARAMETER_FLAGS:
+        return read_flags(r, row, node, store);
+    case PARAMETER_SECTION:
+        return parameter_section(r, row->section, node, store);
+    case PARAMETER_LIST:
+        return read_list(r, row, node, target);
+    case PARAMETER_OTHER:
+        return row->read(r, row, node, target);
+    case PARAMETER_LATER:
+        break;
     }
     return document_fail(r->document, node, r->why, "`%s` (%s) is not in this version yet; remove the key", row->key, row->doc);
 }

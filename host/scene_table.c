@@ -2,6 +2,9 @@
 
 #include <math.h>
 
+/* One row a key reads better than one line a field. */
+/* clang-format off */
+
 /* Shorthands for the rows below. */
 #define AT(type, member) .offset = offsetof(type, member)
 #define POSITIVE .low = 0, .high = INFINITY, .open_low = true
@@ -16,7 +19,8 @@ static const parameter domain_rows[] = {
      .doc = "what happens when a particle leaves the domain: the run stops, or the particle is deleted and counted"},
     {0},
 };
-const section domain_section = {.name = "domain", .doc = "The box that holds the particles. Without it space is unbounded.", .row = domain_rows,
+const section domain_section = {.name = "domain", .doc = "The box that holds the particles. Without it space is unbounded.",
+                                .row = domain_rows,
                                 .finish = finish_domain};
 
 /* For the reference alone: read_effects makes its own rows, which hold the law's options too. */
@@ -27,16 +31,18 @@ static const parameter effect_rows[] = {
     {0},
 };
 const section effect_section = {.name = "effect",
-                                .doc = "The live laws, one entry a slot. Nothing else is simulated, and what is not listed costs nothing. Further "
-                                       "keys are the law's options, below.",
+                                .doc = "The live laws, one entry a slot. Nothing else is simulated, and what is not listed costs nothing. "
+                                       "Further keys are the law's options, below.",
                                 .row = effect_rows, .placed = true, .at = offsetof(effect, at)};
 
 static const parameter material_rows[] = {
     {.key = "name", .type = PARAMETER_NAME, .required = true, AT(material, name), .doc = "name of the material"},
     {0},
 };
-const section material_section = {.name = "material", .doc = "What the particles are made of. A property is needed where a live law reads it.",
-                                  .row = material_rows, .properties = material_properties, .values = offsetof(material, value), .placed = true,
+const section material_section = {.name = "material",
+                                  .doc = "What the particles are made of. A property is needed where a live law reads it.",
+                                  .row = material_rows, .properties = material_properties, .values = offsetof(material, value),
+                                  .placed = true,
                                   .at = offsetof(material, at)};
 
 static const parameter interaction_rows[] = {
@@ -45,9 +51,9 @@ static const parameter interaction_rows[] = {
     {0},
 };
 const section interaction_section = {.name = "interaction",
-                                     .doc = "What two bodies in contact share, by pair of materials or of a material and a wall. The pair's own "
-                                            "entry counts first, then `default`, key by key. `restitution` and `normal_damping_ratio` say the "
-                                            "same thing in two ways: of the two the closer entry's counts. A pair's own `friction_static` "
+                                     .doc = "What two bodies in contact share, by pair of materials or of a material and a wall. The pair's "
+                                            "own entry counts first, then `default`, key by key. `restitution` and `normal_damping_ratio` say "
+                                            "the same thing in two ways: of the two the closer entry's counts. A pair's own `friction_static` "
                                             "also hides `friction_dynamic` of `default`.",
                                      .row = interaction_rows, .properties = interaction_properties, .values = offsetof(interaction, value),
                                      .placed = true, .at = offsetof(interaction, at), .finish = finish_interaction};
@@ -57,7 +63,8 @@ static const parameter region_rows[] = {
     {.key = "high_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, AT(particle_group, region_high_m), .doc = "upper corner"},
     {0},
 };
-const section region_section = {.name = "region", .doc = "A box that holds whole spheres; it wraps where it spans a periodic direction.", .row = region_rows,
+const section region_section = {.name = "region", .doc = "A box that holds whole spheres; it wraps where it spans a periodic direction.",
+                                .row = region_rows,
                                 .finish = finish_region};
 
 static const parameter item_rows[] = {
@@ -74,7 +81,8 @@ static const parameter item_rows[] = {
 const section item_section = {.name = "particle item", .doc = "One particle of a list.", .row = item_rows};
 
 static const parameter radius_rows[] = {
-    {.key = "distribution", .type = PARAMETER_CHOICE, .choices = "uniform|normal|lognormal|sieve", .required = true, .first = RADIUS_UNIFORM,
+    {.key = "distribution", .type = PARAMETER_CHOICE, .choices = "uniform|normal|lognormal|sieve", .required = true,
+     .first = RADIUS_UNIFORM,
      AT(radius_spec, distribution), .doc = "how radii scatter"},
     {.key = "low", .type = PARAMETER_NUMBER, .unit = "m", .required = true, POSITIVE, .only = "uniform", AT(radius_spec, low),
      .doc = "smallest radius"},
@@ -84,12 +92,16 @@ static const parameter radius_rows[] = {
      .doc = "mean of the radius, before truncation"},
     {.key = "std", .type = PARAMETER_NUMBER, .unit = "m", .required = true, NOT_NEGATIVE, .only = "normal|lognormal", AT(radius_spec, std),
      .doc = "standard deviation of the radius, before truncation"},
-    {.key = "truncate_sigmas", .type = PARAMETER_NUMBER, .fallback = "3", .low = 0, .high = 10, .open_low = true, .only = "normal|lognormal",
-     AT(radius_spec, truncate_sigmas), .doc = "radii (lognormal: their logarithms) further from the mean than this many deviations are drawn again"},
-    {.key = "mass_fraction", .type = PARAMETER_NUMBERS, .required = true, .low = 0, .high = 1, .only = "sieve", AT(radius_spec, mass_fraction),
+    {.key = "truncate_sigmas", .type = PARAMETER_NUMBER, .fallback = "3", .low = 0, .high = 10, .open_low = true,
+     .only = "normal|lognormal",
+     AT(radius_spec, truncate_sigmas),
+     .doc = "radii (lognormal: their logarithms) further from the mean than this many deviations are drawn again"},
+    {.key = "mass_fraction", .type = PARAMETER_NUMBERS, .required = true, .low = 0, .high = 1,
+     .only = "sieve", AT(radius_spec, mass_fraction),
      .count = offsetof(radius_spec, count), .doc = "mass between each size and the next as a fraction of the whole; the sum is 1"},
     {.key = "size_m", .type = PARAMETER_OTHER, .read = read_sieve_sizes, .unit = "m", .required = true, POSITIVE, .only = "sieve",
-     AT(radius_spec, size_m), .form = "list of numbers", .doc = "radii that bound the fractions, rising, one more than there are fractions"},
+     AT(radius_spec, size_m), .form = "list of numbers",
+     .doc = "radii that bound the fractions, rising, one more than there are fractions"},
     {0},
 };
 const section radius_section = {.name = "radius distribution", .doc = "A number gives every particle of the group the same radius.",
@@ -101,7 +113,7 @@ static const parameter group_rows[] = {
      .form = "name of a material", .doc = "what the particles are made of"},
     {.key = "generator", .type = PARAMETER_CHOICE, .choices = "list|lattice|random|csv|result", .required = true,
      AT(particle_group, generator),
-     .doc = "where particles come from: written out, on a lattice, at random without overlap, from a table, or from a frame of an earlier run"},
+     .doc = "where particles come from: written out, on a lattice, at random without overlap, from a table, or from an earlier run's frame"},
     {.key = "velocity_m_s", .type = PARAMETER_VECTOR, .unit = "m/s", .fallback = "[0, 0, 0]", AT(particle_group, velocity_m_s),
      .doc = "velocity at the start, where the generator gives none"},
     {.key = "spin_rad_s", .type = PARAMETER_VECTOR, .unit = "rad/s", .fallback = "[0, 0, 0]", AT(particle_group, spin_rad_s),
@@ -118,13 +130,16 @@ static const parameter group_rows[] = {
      .form = "number or radius distribution", .doc = "radius, where the table has no such column"},
     {.key = "region", .type = PARAMETER_SECTION, .section = &region_section, .only = "random", .shown = "the domain",
      .given = offsetof(particle_group, region_given), .doc = "where the particles lie"},
-    {.key = "lattice", .type = PARAMETER_CHOICE, .choices = "simple_cubic|hexagonal|triangular", .fallback = "simple_cubic", .only = "lattice",
+    {.key = "lattice", .type = PARAMETER_CHOICE, .choices = "simple_cubic|hexagonal|triangular", .fallback = "simple_cubic",
+     .only = "lattice",
      AT(particle_group, lattice),
      .doc = "simple cubic; hexagonal close packing in layers along z; or triangular layers in the x-z plane, repeated along y (with "
             "`dimensions: 2` in the x-y plane)"},
     {.key = "counts", .type = PARAMETER_COUNTS, .required = true, .low = 1, .high = 1e9, .only = "lattice", AT(particle_group, counts),
-     .form = "three whole numbers", .doc = "particles along a row, number of rows, number of layers; triangular: along x, along y, along z"},
-    {.key = "spacing_m", .type = PARAMETER_NUMBER, .unit = "m", .required = true, POSITIVE, .only = "lattice", AT(particle_group, spacing_m),
+     .form = "three whole numbers",
+     .doc = "particles along a row, number of rows, number of layers; triangular: along x, along y, along z"},
+    {.key = "spacing_m", .type = PARAMETER_NUMBER, .unit = "m", .required = true, POSITIVE,
+     .only = "lattice", AT(particle_group, spacing_m),
      .doc = "distance between neighbours"},
     {.key = "origin_m", .type = PARAMETER_VECTOR, .unit = "m", .fallback = "[0, 0, 0]", .only = "lattice", AT(particle_group, origin_m),
      .doc = "centre of the first particle"},
@@ -136,7 +151,8 @@ static const parameter group_rows[] = {
      .form = "`free`, `fixed`, or list of motion terms", .doc = "free; held where it is; or moved as prescribed, the terms adding up"},
     {0},
 };
-const section group_section = {.name = "particle group", .doc = "Groups of particles.", .selector = "generator", .row = group_rows, .placed = true,
+const section group_section = {.name = "particle group", .doc = "Groups of particles.", .selector = "generator", .row = group_rows,
+                               .placed = true,
                                .at = offsetof(particle_group, at)};
 
 static const parameter motion_rows[] = {
@@ -145,11 +161,14 @@ static const parameter motion_rows[] = {
     {.key = "velocity_m_s", .type = PARAMETER_VECTOR, .unit = "m/s", .required = true, .only = "constant", AT(motion, velocity_m_s),
      .doc = "velocity"},
     {.key = "direction", .type = PARAMETER_DIRECTION, .required = true, .only = "sinusoid", AT(motion, direction), .doc = "direction"},
-    {.key = "amplitude_m", .type = PARAMETER_NUMBER, .unit = "m", .required = true, NOT_NEGATIVE, .only = "sinusoid", AT(motion, amplitude_m),
+    {.key = "amplitude_m", .type = PARAMETER_NUMBER, .unit = "m", .required = true, NOT_NEGATIVE,
+     .only = "sinusoid", AT(motion, amplitude_m),
      .doc = "amplitude A of the displacement A sin(2 pi f t + phase)"},
-    {.key = "frequency_hz", .type = PARAMETER_NUMBER, .unit = "Hz", .required = true, NOT_NEGATIVE, .only = "sinusoid", AT(motion, frequency_hz),
+    {.key = "frequency_hz", .type = PARAMETER_NUMBER, .unit = "Hz", .required = true, NOT_NEGATIVE,
+     .only = "sinusoid", AT(motion, frequency_hz),
      .doc = "frequency f"},
-    {.key = "phase_rad", .type = PARAMETER_NUMBER, .unit = "rad", .fallback = "0", .only = "sinusoid", AT(motion, phase_rad), .doc = "phase"},
+    {.key = "phase_rad", .type = PARAMETER_NUMBER, .unit = "rad", .fallback = "0", .only = "sinusoid", AT(motion, phase_rad),
+     .doc = "phase"},
     {.key = "point_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, .only = "rotation", AT(motion, point_m),
      .doc = "a point on the axis"},
     {.key = "axis", .type = PARAMETER_DIRECTION, .required = true, .only = "rotation", AT(motion, axis), .doc = "direction of the axis"},
@@ -161,24 +180,29 @@ static const parameter motion_rows[] = {
      .form = "list of [x, y, z]", .doc = "velocity at those times, linear between them and constant outside"},
     {0},
 };
-const section motion_section = {.name = "motion term", .doc = "One term of a prescribed motion; the terms of a list add up.", .selector = "type",
+const section motion_section = {.name = "motion term", .doc = "One term of a prescribed motion; the terms of a list add up.",
+                                .selector = "type",
                                 .row = motion_rows, .finish = finish_motion};
 
 static const parameter wall_rows[] = {
-    {.key = "name", .type = PARAMETER_NAME, .required = true, AT(wall, name), .doc = "name of the wall, used like a material's in `between`"},
+    {.key = "name", .type = PARAMETER_NAME, .required = true, AT(wall, name),
+     .doc = "name of the wall, used like a material's in `between`"},
     {.key = "shape", .type = PARAMETER_CHOICE, .choices = "plane|box|rectangle|disc", .later = "cylinder|cone", .required = true,
      AT(wall, shape), .doc = "shape of the wall"},
-    {.key = "point_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, .only = "plane", AT(wall, point_m), .doc = "a point of the plane"},
+    {.key = "point_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, .only = "plane", AT(wall, point_m),
+     .doc = "a point of the plane"},
     {.key = "normal", .type = PARAMETER_DIRECTION, .required = true, .only = "plane|disc", AT(wall, normal),
      .doc = "normal; a plane's points to the side of the particles"},
     {.key = "low_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, .only = "box", AT(wall, low_m), .doc = "lower corner"},
     {.key = "high_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, .only = "box", AT(wall, high_m), .doc = "upper corner"},
-    {.key = "open", .type = PARAMETER_FLAGS, .choices = "x_low|x_high|y_low|y_high|z_low|z_high", .only = "box", AT(wall, open), .shown = "[]",
+    {.key = "open", .type = PARAMETER_FLAGS, .choices = "x_low|x_high|y_low|y_high|z_low|z_high", .only = "box", AT(wall, open),
+     .shown = "[]",
      .doc = "faces left out; with `dimensions: 2` those along z are always left out"},
     {.key = "corners_m", .type = PARAMETER_OTHER, .read = read_corners, .unit = "m", .required = true, .only = "rectangle",
      .form = "three [x, y, z]", .doc = "a corner and its two neighbours; the sides must be perpendicular"},
     {.key = "center_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, .only = "disc", AT(wall, center_m), .doc = "centre"},
-    {.key = "radius_m", .type = PARAMETER_NUMBER, .unit = "m", .required = true, POSITIVE, .only = "disc", AT(wall, radius_m), .doc = "radius"},
+    {.key = "radius_m", .type = PARAMETER_NUMBER, .unit = "m", .required = true, POSITIVE, .only = "disc", AT(wall, radius_m),
+     .doc = "radius"},
     {.key = "motion", .type = PARAMETER_OTHER, .read = read_motion, .shown = "[]", AT(wall, motion), .form = "list of motion terms",
      .doc = "prescribed motion; the terms add up"},
     {.key = "servo", .type = PARAMETER_LATER, .doc = "a wall that moves to keep a force"},
@@ -189,7 +213,8 @@ const section wall_section = {.name = "wall", .doc = "Rigid walls. They have no 
 
 static const parameter until_rows[] = {
     {.key = "time_s", .type = PARAMETER_NUMBER, .unit = "s", POSITIVE, AT(scene_stage, until_time_s), .doc = "duration of the stage"},
-    {.key = "steps", .type = PARAMETER_INTEGER, .low = 1, .high = 1e15, .absent = -1, AT(scene_stage, until_steps), .doc = "number of steps"},
+    {.key = "steps", .type = PARAMETER_INTEGER, .low = 1, .high = 1e15, .absent = -1, AT(scene_stage, until_steps),
+     .doc = "number of steps"},
     {.key = "rest", .type = PARAMETER_NUMBER, POSITIVE, AT(scene_stage, until_rest),
      .doc = "translational kinetic energy below this fraction of the sum of m g r at 100 successive checks, 100 steps apart"},
     {.key = "rest_j", .type = PARAMETER_NUMBER, .unit = "J", POSITIVE, AT(scene_stage, until_rest_j),
@@ -197,7 +222,8 @@ static const parameter until_rows[] = {
     {.key = "steady_k_s", .type = PARAMETER_LATER, .doc = "an end by temperature rate, which needs heat"},
     {0},
 };
-const section until_section = {.name = "stage end (`until`)", .doc = "When a stage ends; with several keys the first one met ends it.", .row = until_rows,
+const section until_section = {.name = "stage end (`until`)", .doc = "When a stage ends; with several keys the first one met ends it.",
+                               .row = until_rows,
                                .finish = finish_until};
 
 static const parameter wall_change_rows[] = {
@@ -212,7 +238,8 @@ const section wall_change_section = {.name = "wall change",
                                      .row = wall_change_rows, .properties = interaction_properties, .values = offsetof(wall_change, value)};
 
 static const parameter group_change_rows[] = {
-    {.key = "name", .type = PARAMETER_OTHER, .read = read_group, .required = true, AT(group_change, group), .form = "name of a particle group",
+    {.key = "name", .type = PARAMETER_OTHER, .read = read_group, .required = true, AT(group_change, group),
+     .form = "name of a particle group",
      .doc = "the group that changes"},
     {.key = "motion", .type = PARAMETER_OTHER, .read = read_changed_motion, .required = true, AT(group_change, motion),
      .form = "`free`, `fixed`, or list of motion terms", .doc = "its motion from now on"},
@@ -225,9 +252,11 @@ static const parameter change_rows[] = {
      .given = offsetof(scene_stage, gravity_given), .doc = "gravity"},
     {.key = "walls", .type = PARAMETER_LIST, .section = &wall_change_section, .size = sizeof(wall_change), AT(scene_stage, wall_change),
      .count = offsetof(scene_stage, wall_change_count), .doc = "walls whose motion or interactions change"},
-    {.key = "particles", .type = PARAMETER_LIST, .section = &group_change_section, .size = sizeof(group_change), AT(scene_stage, group_change),
+    {.key = "particles", .type = PARAMETER_LIST, .section = &group_change_section,
+     .size = sizeof(group_change), AT(scene_stage, group_change),
      .count = offsetof(scene_stage, group_change_count), .doc = "particle groups whose motion changes"},
-    {.key = "interactions", .type = PARAMETER_LIST, .section = &interaction_section, .size = sizeof(interaction), AT(scene_stage, interaction),
+    {.key = "interactions", .type = PARAMETER_LIST, .section = &interaction_section,
+     .size = sizeof(interaction), AT(scene_stage, interaction),
      .count = offsetof(scene_stage, interaction_count), .doc = "interactions laid over the scene's, pair by pair and key by key"},
     {0},
 };
@@ -247,7 +276,8 @@ static const parameter stage_rows[] = {
      .doc = "slots whose law is switched off during this stage"},
     {0},
 };
-const section stage_section = {.name = "stage", .doc = "What is run, one stage after the other; time runs on.", .row = stage_rows, .placed = true,
+const section stage_section = {.name = "stage", .doc = "What is run, one stage after the other; time runs on.", .row = stage_rows,
+                               .placed = true,
                                .at = offsetof(scene_stage, at)};
 
 static const parameter output_rows[] = {
@@ -259,7 +289,8 @@ static const parameter output_rows[] = {
      .shown = "[kinetic_energy]", .doc = "numbers of the scene as a whole; each wall's force and torque are always written"},
     {.key = "observables_every_s", .type = PARAMETER_NUMBER, .unit = "s", POSITIVE, .shown = "with the frames",
      AT(output_spec, observables_every_s), .doc = "time between observations"},
-    {.key = "contacts", .type = PARAMETER_FLAG, .fallback = "false", AT(output_spec, contacts), .doc = "write the contacts with every frame"},
+    {.key = "contacts", .type = PARAMETER_FLAG, .fallback = "false", AT(output_spec, contacts),
+     .doc = "write the contacts with every frame"},
     {.key = "checkpoint_every_s", .type = PARAMETER_NUMBER, .unit = "s", POSITIVE, .shown = "only when interrupted or stopped by a guard",
      AT(output_spec, checkpoint_every_s), .doc = "time between checkpoints"},
     {0},
@@ -269,7 +300,8 @@ const section output_section = {.name = "output", .doc = "What the results file 
 static const parameter table_rows[] = {
     {.key = "skin_m", .type = PARAMETER_NUMBER, .unit = "m", POSITIVE, .word = "auto", .fallback = "auto", AT(table_spec, skin_m),
      .doc = "pairs up to this far apart are listed, so that the list lasts for many steps"},
-    {.key = "batch_steps", .type = PARAMETER_INTEGER, .low = 1, .high = 1e9, .word = "auto", .fallback = "auto", AT(table_spec, batch_steps),
+    {.key = "batch_steps", .type = PARAMETER_INTEGER, .low = 1, .high = 1e9, .word = "auto",
+     .fallback = "auto", AT(table_spec, batch_steps),
      .doc = "steps enqueued before the host looks"},
     {0},
 };
@@ -314,13 +346,15 @@ static const parameter scene_rows[] = {
      .count = offsetof(scene, wall_count), .shown = "[]", .doc = "rigid walls"},
     {.key = "interactions", .type = PARAMETER_LIST, .section = &interaction_section, .size = sizeof(interaction), AT(scene, interaction),
      .count = offsetof(scene, interaction_count), .shown = "[]", .doc = "what two bodies in contact share"},
-    {.key = "particles", .type = PARAMETER_LIST, .section = &group_section, .size = sizeof(particle_group), .required = true, AT(scene, group),
+    {.key = "particles", .type = PARAMETER_LIST, .section = &group_section, .size = sizeof(particle_group),
+     .required = true, AT(scene, group),
      .count = offsetof(scene, group_count), .doc = "groups of particles"},
     {.key = "stages", .type = PARAMETER_LIST, .section = &stage_section, .size = sizeof(scene_stage), .required = true, AT(scene, stage),
      .count = offsetof(scene, stage_count), .doc = "what is run, one stage after the other"},
     {.key = "output", .type = PARAMETER_SECTION, .section = &output_section, AT(scene, output), .doc = "what the results file holds"},
     {.key = "contact_table", .type = PARAMETER_SECTION, .section = &table_section, AT(scene, table), .doc = "how contacts are searched"},
-    {.key = "guards", .type = PARAMETER_SECTION, .section = &guard_section, AT(scene, guards), .doc = "checks that stop a run that goes wrong"},
+    {.key = "guards", .type = PARAMETER_SECTION, .section = &guard_section, AT(scene, guards),
+     .doc = "checks that stop a run that goes wrong"},
     {.key = "study", .type = PARAMETER_SECTION, .section = &study_section, .doc = "what a study looks at"},
     {0},
 };

@@ -8,13 +8,16 @@
 #include <string.h>
 #include <unistd.h>
 
-/* cmocka has a macro called fail, so it comes after the headers that declare the function. */
+/* cmocka has a macro called fail, so it comes after the headers that declare the function; and it wants this order. */
+/* clang-format off */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
 #include <stdint.h>
 #include <cmocka.h>
+/* clang-format on */
 
+/* clang-format off */
 /* Every key of the interface that this version has. */
 static const char full[] =
     "title: Heated layer\n"
@@ -98,6 +101,8 @@ static const char flat[] =
     "  - {name: rows, material: glass, generator: lattice, lattice: triangular, counts: [20, 1, 9], spacing_m: 2.0e-3, radius_m: 1.0e-3}\n"
     "  - {name: cloud, material: glass, generator: random, count: 3, radius_m: 1.0e-3, region: {low_m: [0, 0, 0], high_m: [1, 1, 0]}}\n"
     "stages: [{until: {time_s: 1}}]\n";
+
+/* clang-format on */
 
 static scene *read_good_with(const char *text, int set_count, char *const *sets)
 {
@@ -251,9 +256,10 @@ static void test_generators_and_motion(void **state)
     assert_string_equal(s->group[1].path, "dir/grains.csv");
     assert_true(s->group[1].fixed);
     scene_free(s);
-    s = read_replaced(base, "generator: random, count: 10, radius_m: 1.0e-3, region: {low_m: [0, 0, 0], high_m: [1, 1, 1]}",
-                      "generator: result, file: /tmp/a.h5, frame: 3, motion: [{type: rotation, point_m: [0, 0, 0], axis: [0, 3, 4], rate_rad_s: 2}, "
-                      "{type: table, time_s: [0, 1], velocity_m_s: [[0, 0, 0], [1, 2, 3]]}]");
+    s = read_replaced(
+        base, "generator: random, count: 10, radius_m: 1.0e-3, region: {low_m: [0, 0, 0], high_m: [1, 1, 1]}",
+        "generator: result, file: /tmp/a.h5, frame: 3, motion: [{type: rotation, point_m: [0, 0, 0], axis: [0, 3, 4], rate_rad_s: 2}, "
+        "{type: table, time_s: [0, 1], velocity_m_s: [[0, 0, 0], [1, 2, 3]]}]");
     const particle_group *group = &s->group[1];
     assert_string_equal(group->path, "/tmp/a.h5");
     assert_int_equal(group->frame, 3);
@@ -261,7 +267,8 @@ static void test_generators_and_motion(void **state)
     assert_true(fabs(group->motion.term[0].axis[2] - 0.8) < 1e-15);
     assert_true(group->motion.term[1].count == 2 && group->motion.term[1].table_velocity_m_s[1][2] == 3.0);
     scene_free(s);
-    s = read_replaced(base, "radius_m: 1.0e-3, region", "radius_m: {distribution: sieve, size_m: [1, 2, 3], mass_fraction: [0.25, 0.75]}, region");
+    s = read_replaced(base, "radius_m: 1.0e-3, region",
+                      "radius_m: {distribution: sieve, size_m: [1, 2, 3], mass_fraction: [0.25, 0.75]}, region");
     assert_int_equal(s->group[1].radius_m.distribution, RADIUS_SIEVE);
     assert_int_equal(s->group[1].radius_m.count, 2);
     assert_true(s->group[1].radius_m.size_m[2] == 3.0 && s->group[1].radius_m.mass_fraction[1] == 0.75);
@@ -328,11 +335,12 @@ static void test_resolution(void **state)
 static void test_changes_last(void **state)
 {
     (void)state;
-    scene *s = read_replaced(base, "output:",
-                             "  - {name: third, until: {steps: 1}, change: {gravity_m_s2: [1, 0, 0], particles: [{name: one, motion: fixed}], "
-                             "walls: [{name: floor, motion: [], friction_static: 0.9}]}}\n"
-                             "  - {name: last, until: {steps: 1}, change: {interactions: [{between: [steel, floor], friction_static: 0.8}]}}\n"
-                             "output:");
+    scene *s = read_replaced(
+        base, "output:",
+        "  - {name: third, until: {steps: 1}, change: {gravity_m_s2: [1, 0, 0], particles: [{name: one, motion: fixed}], "
+        "walls: [{name: floor, motion: [], friction_static: 0.9}]}}\n"
+        "  - {name: last, until: {steps: 1}, change: {interactions: [{between: [steel, floor], friction_static: 0.8}]}}\n"
+        "output:");
     double g[3];
     scene_gravity(s, 1, g);
     assert_true(g[2] == -9.81);
@@ -348,6 +356,7 @@ static void test_changes_last(void **state)
     scene_free(s);
 }
 
+/* clang-format off */
 static const bad_scene bad_scenes[] = {
     /* YAML */
     {"title: base", "title: [", "scene.yaml:"},
@@ -482,6 +491,7 @@ static const bad_scene bad_scenes[] = {
     {"observables: [kinetic_energy]", "fields: [position, position]", "listed twice"},
     {"observables: [kinetic_energy]", "fields: [colour]", "there is no field called `colour`"},
 };
+/* clang-format on */
 
 static void test_bad_scenes(void **state)
 {
@@ -493,14 +503,16 @@ static void test_bad_flat_scenes(void **state)
 {
     (void)state;
     static const bad_scene bad[] = {
-        {"[0, -9.81, 0]", "[0, 0, -9.81]", "dir/scene.yaml:2:15: with `dimensions: 2` z of `gravity_m_s2` (y is up) must be 0; it is -9.81"},
+        {"[0, -9.81, 0]", "[0, 0, -9.81]",
+         "dir/scene.yaml:2:15: with `dimensions: 2` z of `gravity_m_s2` (y is up) must be 0; it is -9.81"},
         {"position_m: [0, 0, 0]", "position_m: [0, 0, 1]", "z of a position must be 0"},
         {"velocity_m_s: [1, 0, 0]", "velocity_m_s: [1, 0, 1]", "z of a velocity must be 0"},
         {"spin_rad_s: [0, 0, 1]", "spin_rad_s: [0, 1, 1]", "spin about y must be 0"},
         {"counts: [20, 1, 9]", "counts: [20, 2, 9]", "a triangular lattice has one layer: entry 2 of `counts` must be 1; it is 2"},
         {"lattice: triangular", "lattice: hexagonal", "entry 3 of `counts` must be 1; it is 9"},
         {"normal: [0, 1, 0]", "normal: [0, 1, 1]", "a wall's normal must lie in the x-y plane"},
-        {"normal: [0, 1, 0]", "normal: [0, 1, 0], motion: [{type: rotation, point_m: [0, 0, 0], axis: [1, 0, 0], rate_rad_s: 1}]", "an axis must lie along z"},
+        {"normal: [0, 1, 0]", "normal: [0, 1, 0], motion: [{type: rotation, point_m: [0, 0, 0], axis: [1, 0, 0], rate_rad_s: 1}]",
+         "an axis must lie along z"},
         {"normal: [0, 1, 0]", "normal: [0, 1, 0], motion: [{type: constant, velocity_m_s: [0, 0, 1]}]", "velocities have no z component"},
         {"[0, 0, 1]]", "[-1, 1, 0]]", "one side of a rectangle must lie along z"},
         {"region: {low_m: [0, 0, 0]", "region: {low_m: [0, 0, -1]", "a region lies at z = 0"},
@@ -557,11 +569,19 @@ static void test_files(void **state)
 static void test_set(void **state)
 {
     (void)state;
-    char *const sets[] = {"walls[floor].point_m=[0,0,1]", "effects[tangential].shear_modulus=mindlin",
-                          "particles[pair].items[0].velocity_m_s=[2,0,0]", "stages[settle].until.time_s=1", "seed=3",
-                          "interactions[default].restitution=0.25", "interactions[floor,steel].friction_static=0.7", "walls[2].motion=[]",
-                          "particles[bed].radius_m={distribution: uniform, low: 1e-3, high: 2e-3}", "particles[bed].count=5",
-                          "output.fields[1]=force", "title=\"a: b\"", "seed=4"};
+    char *const sets[] = {"walls[floor].point_m=[0,0,1]",
+                          "effects[tangential].shear_modulus=mindlin",
+                          "particles[pair].items[0].velocity_m_s=[2,0,0]",
+                          "stages[settle].until.time_s=1",
+                          "seed=3",
+                          "interactions[default].restitution=0.25",
+                          "interactions[floor,steel].friction_static=0.7",
+                          "walls[2].motion=[]",
+                          "particles[bed].radius_m={distribution: uniform, low: 1e-3, high: 2e-3}",
+                          "particles[bed].count=5",
+                          "output.fields[1]=force",
+                          "title=\"a: b\"",
+                          "seed=4"};
     scene *s = read_good_with(full, (int)COUNT(sets), sets);
     assert_true(s->wall[0].point_m[2] == 1.0);
     assert_true(s->effect[1].option[0] == 1.0);
@@ -658,9 +678,17 @@ static void test_reference(void **state)
 {
     (void)state;
     char *page = scene_reference();
-    static const char *const expected[] = {"`dimensions`", "`shear_modulus`", "rolling: `constant_torque`", "`youngs_modulus_pa` | number, above 0",
-                                           "J/(kg K)", "`truncate_sigmas`", "| `every_steps` | whole number", "`coordination_number`", "that of friction_static",
-                                           "| `step_s` | number, above 0, or `auto` | s | `auto`", "(generator `random`)"};
+    static const char *const expected[] = {"`dimensions`",
+                                           "`shear_modulus`",
+                                           "rolling: `constant_torque`",
+                                           "`youngs_modulus_pa` | number, above 0",
+                                           "J/(kg K)",
+                                           "`truncate_sigmas`",
+                                           "| `every_steps` | whole number",
+                                           "`coordination_number`",
+                                           "that of friction_static",
+                                           "| `step_s` | number, above 0, or `auto` | s | `auto`",
+                                           "(generator `random`)"};
     for (size_t k = 0; k < COUNT(expected); k++)
         if (!strstr(page, expected[k]))
             fail_msg("the reference lacks: %s", expected[k]);
@@ -677,11 +705,20 @@ static void test_reference(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_full_example),    cmocka_unit_test(test_defaults),      cmocka_unit_test(test_generators_and_motion),
-        cmocka_unit_test(test_two_dimensions),  cmocka_unit_test(test_resolution),    cmocka_unit_test(test_changes_last),
-        cmocka_unit_test(test_bad_scenes),      cmocka_unit_test(test_bad_flat_scenes), cmocka_unit_test(test_bad_documents),
-        cmocka_unit_test(test_files),           cmocka_unit_test(test_set),           cmocka_unit_test(test_bad_settings),
-        cmocka_unit_test(test_text_round_trip), cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_full_example),
+        cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_generators_and_motion),
+        cmocka_unit_test(test_two_dimensions),
+        cmocka_unit_test(test_resolution),
+        cmocka_unit_test(test_changes_last),
+        cmocka_unit_test(test_bad_scenes),
+        cmocka_unit_test(test_bad_flat_scenes),
+        cmocka_unit_test(test_bad_documents),
+        cmocka_unit_test(test_files),
+        cmocka_unit_test(test_set),
+        cmocka_unit_test(test_bad_settings),
+        cmocka_unit_test(test_text_round_trip),
+        cmocka_unit_test(test_reference),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
