@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -102,17 +103,54 @@ static status check_sizes(const scene *s, int group, const packing *p, int64_t m
     return STATUS_OK;
 }
 
-/* `reached` is the fraction that the spheres could be brought to (0: not tried). The advice keeps a little away from it. */
-static status refuse_fraction(const scene *s, int group, const packing *p, int64_t moving, double asked, double reached, failure *why)
+static double power(const packing *p, double length)
+{
+    return p->dimensions == 2 ? length * length : length * length * length;
+}
+
+/* Whether the first `count` of the `moving` spheres find room beside the obstacles: what the scene would do with that count. */
+static bool has_room_for(const packing *p, int64_t moving, int64_t count, uint64_t seed, int group)
+{
+    packing part = *p;
+    int64_t obstacles = p->count - moving;
+    bool overlap = true;
+    double reached = 1.0;
+    part.count = count + obstacles;
+    part.position = calloc((size_t)part.count, sizeof *part.position);
+    part.radius = malloc((size_t)part.count * sizeof *part.radius);
+    part.fixed = calloc((size_t)part.count, sizeof *part.fixed);
+    bool fits = part.position && part.radius && part.fixed;
+    if (fits) {
+        memcpy(part.radius, p->radius, (size_t)count * sizeof *part.radius);
+        memcpy(part.radius + count, p->radius + moving, (size_t)obstacles * sizeof *part.radius);
+        memcpy(part.position + count, p->position + moving, (size_t)obstacles * sizeof *part.position);
+        memcpy(part.fixed + count, p->fixed + moving, (size_t)obstacles * sizeof *part.fixed);
+        fits = packing_insert(&part, seed, (uint32_t)group, &overlap) && (!overlap || packing_relax(&part, 0.0, &reached)) && reached == 1.0;
+    }
+    free(part.position);
+    free(part.radius);
+    free(part.fixed);
+    return fits;
+}
+
+/* `shrink` is the factor on all lengths at which the spheres could be packed (0: unknown). A region is larger by it with a little to
+ * spare; the count is tried out, because in a narrow region it does not follow from the volume. */
+static status refuse_fraction(const scene *s, int group, const packing *p, int64_t moving, double asked, double shrink, failure *why)
 {
     bool flat = p->dimensions == 2;
     double sure = flat ? sure_fraction_2d : sure_fraction_3d;
-    double fits = 0.99 * (reached > 0.0 ? fmin(reached, sure) : sure);
+    double fits = 0.99 * (shrink > 0.0 ? fmin(asked * power(p, shrink), sure) : sure);
+    int64_t count = (int64_t)((double)moving * fits / asked);
+    while (count > 0 && !has_room_for(p, moving, count, s->seed, group))
+        count -= 1 + count / 25;
+    char advice[96] = "";
+    if (count > 0)
+        snprintf(advice, sizeof advice, "at most %" PRId64 " particles (a fraction of %.3f) or ", count, grains_size(p, count) / region_size(p));
     return bed_refuse(s, group, why,
                       "%" PRId64 " particles are %s fraction of %.3f of their region (%.6g %s), which cannot be reached without overlap; ask "
-                      "for at most %" PRId64 " particles (a fraction of %.3f) or for a region of at least %.6g %s",
-                      moving, flat ? "an area" : "a volume", asked, region_size(p), flat ? "m2" : "m3",
-                      (int64_t)fmax(1.0, floor((double)moving * fits / asked)), fits, region_size(p) * asked / fits, flat ? "m2" : "m3");
+                      "for %sa region of at least %.6g %s",
+                      moving, flat ? "an area" : "a volume", asked, region_size(p), flat ? "m2" : "m3", advice, region_size(p) * asked / fits,
+                      flat ? "m2" : "m3");
 }
 
 static status pack(const scene *s, int group, packing *p, int64_t moving, failure *why)
@@ -125,9 +163,7 @@ static status pack(const scene *s, int group, packing *p, int64_t moving, failur
     double sure = flat ? sqrt(sure_fraction_2d / asked) : cbrt(sure_fraction_3d / asked);
     if (!packing_insert(p, s->seed, (uint32_t)group, &overlap) || (overlap && !packing_relax(p, sure, &reached)))
         return fail(why, STATUS_ERROR, "out of memory while packing %" PRId64 " particles", moving);
-    if (reached < 1.0)
-        return refuse_fraction(s, group, p, moving, asked, asked * reached * reached * (flat ? 1.0 : reached), why);
-    return STATUS_OK;
+    return reached == 1.0 ? STATUS_OK : refuse_fraction(s, group, p, moving, asked, reached, why);
 }
 
 status bed_random(const scene *s, int group, bed *b, failure *why)

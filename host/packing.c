@@ -128,7 +128,7 @@ typedef struct relaxation {
     int32_t *order;
     double *mobility;        /* 1/r^3, 0 for obstacles: a push moves the small sphere */
     double (*built)[3];      /* positions at the last list */
-    double list_factor;      /* inflation that the list allows for */
+    double scale;            /* of all radii, below 1 while looking for what would fit */
     pair *pairs;
     int64_t pair_count, pair_capacity;
     sphere_grid grid;
@@ -151,7 +151,7 @@ static void relaxation_free(relaxation *r)
 static bool relaxation_init(const packing *p, relaxation *r)
 {
     size_t n = (size_t)p->count;
-    *r = (relaxation){.p = *p, .list_factor = inflation};
+    *r = (relaxation){.p = *p, .scale = 1.0};
     r->p.position = malloc(n * sizeof *r->p.position + 1);
     r->p.radius = malloc(n * sizeof *r->p.radius + 1);
     r->p.fixed = malloc(n * sizeof *r->p.fixed + 1);
@@ -160,7 +160,7 @@ static bool relaxation_init(const packing *p, relaxation *r)
     r->built = malloc(n * sizeof *r->built + 1);
     if (!r->p.position || !r->p.radius || !r->p.fixed || !r->order || !r->mobility || !r->built)
         return false;
-    if (!sphere_order(p->count, (const double (*)[3])p->position, r->order))
+    if (!sphere_order(p->count, (const double (*)[3])p->position, p->radius, r->order))
         return false;
     double top = 0.0;
     for (int64_t k = 0; k < p->count; k++)
@@ -196,12 +196,12 @@ static double distance_squared(const packing *p, int32_t i, int32_t j, double br
     return branch[0] * branch[0] + branch[1] * branch[1] + branch[2] * branch[2];
 }
 
-/* All pairs that can come closer than list_factor times their radii before one of them has moved by its skin. The finer level looks into
+/* All pairs that can come closer than their inflated radii before one of them has moved by its skin. The finer level looks into
  * the coarser ones, and within a level the later sphere looks at the earlier, so that each pair is found once. */
 static bool list_pairs(relaxation *r)
 {
     packing *p = &r->p;
-    double grow = r->list_factor + skin;
+    double grow = inflation + skin;
     r->pair_count = 0;
     sphere_grid_clear(&r->grid);
     for (int64_t i = 0; i < p->count; i++) {
@@ -228,32 +228,33 @@ static bool list_pairs(relaxation *r)
     return true;
 }
 
-static void shift(packing *p, int32_t i, const double branch[3], double share)
+/* The faces see the scaled radius: shrinking everything is then the same as a larger box. */
+static void shift(packing *p, double scale, int32_t i, const double branch[3], double share)
 {
     for (int d = 0; d < p->dimensions; d++) {
         double x = p->position[i][d] + share * branch[d];
         if (!p->open[d]) {
             double low, high;
-            face_range(p, d, p->radius[i], &low, &high);
+            face_range(p, d, scale * p->radius[i], &low, &high);
             x = x < low ? low : x > high ? high : x;
         }
         p->position[i][d] = x;
     }
 }
 
-/* One pass over the pairs (every other one backwards, so that no direction is favoured): each is pushed apart to `factor` times its radii
- * at once. Returns the sum of the squared overlaps, as shares of the distance, that went beyond `scale` times the radii. */
-static double push_apart(relaxation *r, double factor, double scale, bool backwards)
+/* One pass over the pairs (every other one backwards, so that no direction is favoured): each is pushed apart to its inflated radii
+ * at once. Returns the sum of the squared overlaps, as shares of the distance, of the radii themselves. */
+static double push_apart(relaxation *r, bool backwards)
 {
     packing *p = &r->p;
     double sum = 0.0;
     for (int64_t n = 0; n < r->pair_count; n++) {
         pair c = r->pairs[backwards ? r->pair_count - 1 - n : n];
-        double branch[3], radii = p->radius[c.i] + p->radius[c.j];
-        double wanted = factor * radii, distance2 = distance_squared(p, c.i, c.j, branch);
+        double branch[3], radii = r->scale * (p->radius[c.i] + p->radius[c.j]);
+        double wanted = inflation * radii, distance2 = distance_squared(p, c.i, c.j, branch);
         if (distance2 >= wanted * wanted)
             continue;
-        double distance = sqrt(distance2), bare = 1.0 - distance / (scale * radii);
+        double distance = sqrt(distance2), bare = 1.0 - distance / radii;
         if (bare > -PACKING_MARGIN)
             sum += (bare + PACKING_MARGIN) * (bare + PACKING_MARGIN);
         if (distance < 1.0e-9 * radii) { /* no direction to speak of: any will do */
@@ -261,8 +262,8 @@ static double push_apart(relaxation *r, double factor, double scale, bool backwa
             branch[1] = branch[2] = 0.0;
         }
         double push = over_relaxation * (wanted - distance) / (distance * (r->mobility[c.i] + r->mobility[c.j]));
-        shift(p, c.i, branch, push * r->mobility[c.i]);
-        shift(p, c.j, branch, -push * r->mobility[c.j]);
+        shift(p, r->scale, c.i, branch, push * r->mobility[c.i]);
+        shift(p, r->scale, c.j, branch, -push * r->mobility[c.j]);
     }
     return sum;
 }
@@ -281,29 +282,29 @@ static bool list_is_stale(const relaxation *r)
     return false;
 }
 
-static bool is_clear(const relaxation *r, double scale)
+static bool is_clear(const relaxation *r)
 {
     for (int64_t n = 0; n < r->pair_count; n++) {
         pair c = r->pairs[n];
-        double branch[3], wanted = scale * (1.0 + PACKING_MARGIN) * (r->p.radius[c.i] + r->p.radius[c.j]);
+        double branch[3], wanted = r->scale * (1.0 + PACKING_MARGIN) * (r->p.radius[c.i] + r->p.radius[c.j]);
         if (distance_squared(&r->p, c.i, c.j, branch) < wanted * wanted)
             return false;
     }
     return true;
 }
 
-/* Pushes until radii times `scale` are clear of each other, or until that no longer gets nearer. */
-static bool relax_to(relaxation *r, double scale, int passes, bool *clear)
+/* Pushes until the scaled spheres are clear of each other, or until that no longer gets nearer. */
+static bool relax(relaxation *r, int passes, bool *clear)
 {
     double before = INFINITY;
     *clear = false;
     for (int pass = 0; pass < passes; pass++) {
         if (pass % LIST_CHECK_PASSES == 0 && list_is_stale(r) && !list_pairs(r))
             return false;
-        double overlap = push_apart(r, scale * inflation, scale, pass & 1);
+        double overlap = push_apart(r, pass & 1);
         if (overlap == 0.0 && list_is_stale(r) && !list_pairs(r))
             return false;
-        if (overlap == 0.0 && is_clear(r, scale)) {
+        if (overlap == 0.0 && is_clear(r)) {
             *clear = true;
             return true;
         }
@@ -320,18 +321,17 @@ bool packing_relax(packing *p, double sure, double *reached)
 {
     relaxation r;
     bool clear = false, fits = relaxation_init(p, &r) && list_pairs(&r);
-    double scale = 1.0;
     if (fits)
-        fits = relax_to(&r, scale, 3000, &clear);
+        fits = relax(&r, 3000, &clear);
     /* What does not fit is shrunk until it does, to be able to say what would. */
-    for (bool first = true; fits && !clear && scale > 0.02; first = false) {
-        scale = first && sure < 1.0 ? sure : 0.98 * scale;
-        fits = relax_to(&r, scale, 300, &clear);
+    for (bool first = true; fits && !clear && sure > 0.0 && r.scale > 0.02; first = false) {
+        r.scale = first && sure < 1.0 ? sure : 0.98 * r.scale;
+        fits = relax(&r, 300, &clear);
     }
     if (fits)
         for (int64_t k = 0; k < p->count; k++)
             memcpy(p->position[r.order[k]], r.p.position[k], sizeof r.p.position[k]);
-    *reached = scale;
+    *reached = clear ? r.scale : 0.0;
     relaxation_free(&r);
     return fits;
 }

@@ -23,8 +23,8 @@ typedef struct packing {
 /* Gives every sphere that is not fixed a place, and says whether any two overlap. The place of sphere i is a function of seed, group, i
  * and of what is larger or fixed. False when memory runs out. */
 bool packing_insert(packing *p, uint64_t seed, uint32_t group, bool *overlap);
-/* Pushes overlapping spheres apart. `reached` is 1 when nothing overlaps any more, else a factor (below 1) by which all radii would have
- * to shrink for that; `sure` is the first such factor to try. False when memory runs out. */
+/* Pushes overlapping spheres apart. `reached` is 1 when nothing overlaps any more; else a factor below 1 by which everything would have to
+ * shrink for that, of which `sure` is the first to be tried (0: none is tried), or 0 when none was found. False when memory runs out. */
 bool packing_relax(packing *p, double sure, double *reached);
 
 #endif

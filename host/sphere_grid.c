@@ -217,24 +217,21 @@ static uint64_t spread_bits(uint64_t x)
     return (x | x << 2) & 0x1249249249249249u;
 }
 
-bool sphere_order(int64_t count, const double (*position)[3], int32_t *order)
+/* Counted in mean radii and modulo 2^21, so that a grain far away does not squeeze all others into one place of the curve. */
+bool sphere_order(int64_t count, const double (*position)[3], const double *radius, int32_t *order)
 {
     curve_point *point = malloc((size_t)count * sizeof *point + 1);
     if (!point)
         return false;
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, span = 0.0;
+    double mean = 0.0;
     for (int64_t i = 0; i < count; i++)
-        for (int d = 0; d < 3; d++) {
-            low[d] = fmin(low[d], position[i][d]);
-            high[d] = fmax(high[d], position[i][d]);
-        }
-    for (int d = 0; d < 3 && count > 0; d++)
-        span = fmax(span, high[d] - low[d]);
-    double scale = span > 0.0 ? 0x1fffff / span : 0.0;
+        mean += radius[i] / (double)count;
     for (int64_t i = 0; i < count; i++) {
         uint64_t code = 0;
-        for (int d = 0; d < 3; d++)
-            code |= spread_bits((uint64_t)((position[i][d] - low[d]) * scale)) << d;
+        for (int d = 0; d < 3; d++) {
+            double x = floor((position[i][d] - position[0][d]) / mean);
+            code |= spread_bits((uint64_t)(int64_t)fmin(fmax(x, -cell_limit), cell_limit)) << d;
+        }
         point[i] = (curve_point){.code = code, .index = (int32_t)i};
     }
     qsort(point, (size_t)count, sizeof *point, compare_places);

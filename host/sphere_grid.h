@@ -71,6 +71,6 @@ static inline void sphere_branch(const sphere_space *space, const double a[3], c
 /* Coordinate brought into [origin, origin + length) where periodic. */
 double sphere_wrap(const sphere_space *space, int direction, double x);
 /* Order along a space-filling curve, so that spheres close in space are close in memory. `order` has room for count. */
-bool sphere_order(int64_t count, const double (*position)[3], int32_t *order);
+bool sphere_order(int64_t count, const double (*position)[3], const double *radius, int32_t *order);
 
 #endif
