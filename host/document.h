@@ -8,12 +8,12 @@
 
 /* Nodes are named by libyaml's ids, counted from 1; 0 is none. */
 typedef struct document {
-    const char *path;    /* as the user gave it; messages begin with it */
+    const char *path; /* as the user gave it; messages begin with it */
     yaml_document_t yaml;
     bool loaded;
-    char *const *set;    /* the `--set` strings as given */
-    int set_count;       /* those applied so far */
-    int *set_first;      /* first node that each of them brought */
+    char *const *set; /* the `--set` strings as given */
+    int set_count;    /* those applied so far */
+    int *set_first;   /* first node that each of them brought */
 } document;
 
 /* Reads the text and applies the settings in order. Rejects what a scene has no use for: anchors and aliases, tags, keys

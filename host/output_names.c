@@ -13,7 +13,7 @@ const output_name output_fields[] = {
 };
 
 #define LEDGER "the energy ledger"
-#define HEAT "a heat law"
+#define HEAT   "a heat law"
 
 const output_name output_observables[] = {
     {"time_step", "s", 1, NULL, "time step"},

@@ -37,40 +37,40 @@ typedef struct reader {
 typedef struct parameter {
     const char *key;
     parameter_type type;
-    const char *unit;       /* NULL: none */
-    double low, high;       /* both ends included unless open_low; both 0: any number */
+    const char *unit; /* NULL: none */
+    double low, high; /* both ends included unless open_low; both 0: any number */
     bool open_low;
     bool required;
-    bool keep;              /* when absent leave what is there */
-    const char *fallback;   /* default as text; NULL: NAN, -1, empty */
-    const char *shown;      /* default for the reference, where it is not `fallback` */
-    const char *word;       /* accepted instead of a number and stored like an absent one ("auto") */
-    double absent;          /* what an integer stores then */
-    const char *choices;    /* "a|b|c" */
-    const char *later;      /* choices of the interface that this version lacks */
-    int first;              /* enum value of the first choice */
-    bool as_number;         /* a choice stored as a double */
-    bool as_flag;           /* a choice of two stored as a bool: true is the second */
-    const char *only;       /* values of the section's selector under which the key exists, "a|b"; NULL: all */
+    bool keep;            /* when absent leave what is there */
+    const char *fallback; /* default as text; NULL: NAN, -1, empty */
+    const char *shown;    /* default for the reference, where it is not `fallback` */
+    const char *word;     /* accepted instead of a number and stored like an absent one ("auto") */
+    double absent;        /* what an integer stores then */
+    const char *choices;  /* "a|b|c" */
+    const char *later;    /* choices of the interface that this version lacks */
+    int first;            /* enum value of the first choice */
+    bool as_number;       /* a choice stored as a double */
+    bool as_flag;         /* a choice of two stored as a bool: true is the second */
+    const char *only;     /* values of the section's selector under which the key exists, "a|b"; NULL: all */
     const char *doc;
-    const char *form;       /* for the reference: what the value looks like, where the type does not say it */
-    size_t offset;          /* in the section's struct */
-    size_t count;           /* offset of an int: length of a list */
-    size_t given;           /* offset of a bool set when the key is there; 0: none */
-    size_t size;            /* of one struct of a list */
+    const char *form; /* for the reference: what the value looks like, where the type does not say it */
+    size_t offset;    /* in the section's struct */
+    size_t count;     /* offset of an int: length of a list */
+    size_t given;     /* offset of a bool set when the key is there; 0: none */
+    size_t size;      /* of one struct of a list */
     const struct section *section;
     status (*read)(reader *r, const struct parameter *row, int node, void *target);
 } parameter;
 
 typedef struct section {
-    const char *name;     /* "wall", as messages call it */
+    const char *name; /* "wall", as messages call it */
     const char *doc;
-    const char *selector; /* key of the choice that says which rows exist, or NULL */
-    const parameter *row; /* ends with a NULL key */
+    const char *selector;                       /* key of the choice that says which rows exist, or NULL */
+    const parameter *row;                       /* ends with a NULL key */
     const property *const *(*properties)(void); /* further keys, one number each */
-    size_t values;        /* offset of the double * that holds them */
+    size_t values;                              /* offset of the double * that holds them */
     bool placed;
-    size_t at;            /* offset of a place */
+    size_t at;                                           /* offset of a place */
     status (*finish)(reader *r, int node, void *target); /* checks over several keys; normalising */
 } section;
 

@@ -58,7 +58,8 @@ static bool is_pair(const interaction *entry, const char *a, const char *b)
 {
     if (entry->is_default)
         return false;
-    return (!strcmp(entry->between[0], a) && !strcmp(entry->between[1], b)) || (!strcmp(entry->between[0], b) && !strcmp(entry->between[1], a));
+    return (!strcmp(entry->between[0], a) && !strcmp(entry->between[1], b)) ||
+           (!strcmp(entry->between[0], b) && !strcmp(entry->between[1], a));
 }
 
 static void look_through(search *find, const interaction *entry, int count, bool defaults)

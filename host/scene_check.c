@@ -103,7 +103,8 @@ static status check_changes_once(reader *r)
             for (int j = 0; j < k; j++)
                 if (stage->group_change[j].group == stage->group_change[k].group)
                     return document_fail(r->document, document_at(r->document, "stages[%d].change.particles[%d]", t, k), r->why,
-                                         "the particle group `%s` is changed twice in this stage", s->group[stage->group_change[k].group].name);
+                                         "the particle group `%s` is changed twice in this stage",
+                                         s->group[stage->group_change[k].group].name);
     }
     return STATUS_OK;
 }
@@ -135,8 +136,8 @@ static status check_material_needs(reader *r, const effect *live)
         for (int m = 0; m < s->material_count; m++)
             if (isnan(scene_material(s, m, live->law->material_needs[n])))
                 return document_fail(r->document, document_at(r->document, "materials[%d]", m), r->why,
-                                     "the %s law `%s` needs `%s`, which the material `%s` lacks", slot_name(live->law->slot), live->law->name,
-                                     live->law->material_needs[n]->key, s->material[m].name);
+                                     "the %s law `%s` needs `%s`, which the material `%s` lacks", slot_name(live->law->slot),
+                                     live->law->name, live->law->material_needs[n]->key, s->material[m].name);
     return STATUS_OK;
 }
 
@@ -149,8 +150,8 @@ static status check_pair_needs(reader *r, const effect *live, int stage, int a, 
             return document_fail(r->document, document_at(r->document, "effects[%d]", (int)(live - s->effect)), r->why,
                                  "the %s law `%s` needs `%s` between `%s` and %s`%s`; add it under `interactions`, to an entry "
                                  "{between: [%s, %s]} or to `default`",
-                                 slot_name(live->law->slot), live->law->name, need->key, s->material[a].name,
-                                 w >= 0 ? "the wall " : "", w >= 0 ? s->wall[w].name : s->material[b].name, s->material[a].name,
+                                 slot_name(live->law->slot), live->law->name, need->key, s->material[a].name, w >= 0 ? "the wall " : "",
+                                 w >= 0 ? s->wall[w].name : s->material[b].name, s->material[a].name,
                                  w >= 0 ? s->wall[w].name : s->material[b].name);
     }
     return STATUS_OK;
@@ -272,7 +273,8 @@ static status check_zero(reader *r, double value, const char *what, const char *
     if (value == 0.0)
         return STATUS_OK;
     snprintf(path, sizeof path, format, index, item);
-    return document_fail(r->document, document_at(r->document, "%s", path), r->why, "with `dimensions: 2` %s must be 0; it is %g", what, value);
+    return document_fail(r->document, document_at(r->document, "%s", path), r->why, "with `dimensions: 2` %s must be 0; it is %g", what,
+                         value);
 }
 
 static status check_planar_lattice(reader *r, int k)

@@ -6,8 +6,12 @@
 
 static status read_terms(reader *r, const parameter *row, int node, motion_list *list)
 {
-    const parameter terms = {.key = row->key, .type = PARAMETER_LIST, .section = &motion_section, .size = sizeof(motion),
-                             .offset = offsetof(motion_list, term), .count = offsetof(motion_list, count)};
+    const parameter terms = {.key = row->key,
+                             .type = PARAMETER_LIST,
+                             .section = &motion_section,
+                             .size = sizeof(motion),
+                             .offset = offsetof(motion_list, term),
+                             .count = offsetof(motion_list, count)};
     return parameter_value(r, &terms, node, list);
 }
 
@@ -51,8 +55,8 @@ status read_table_velocity(reader *r, const parameter *row, int node, void *targ
     int length = 0;
     TRY(parameter_list_length(r, row, node, &length));
     if (length != term->count)
-        return document_fail(r->document, node, r->why, "`%s` has %d entries and `time_s` has %d; give one velocity for each time", row->key,
-                             length, term->count);
+        return document_fail(r->document, node, r->why, "`%s` has %d entries and `time_s` has %d; give one velocity for each time",
+                             row->key, length, term->count);
     term->table_velocity_m_s = scene_allocate((size_t)length, sizeof *term->table_velocity_m_s);
     for (int k = 0; k < length; k++)
         TRY(parameter_vector(r, row, document_item(r->document, node, k), term->table_velocity_m_s[k]));
@@ -64,8 +68,8 @@ static status check_planar_motion(reader *r, int node, const motion *term)
 {
     document *d = r->document;
     if (term->type == MOTION_CONSTANT && term->velocity_m_s[2] != 0.0)
-        return document_fail(d, document_find(d, node, "velocity_m_s"), r->why, "with `dimensions: 2` velocities have no z component; it is %g",
-                             term->velocity_m_s[2]);
+        return document_fail(d, document_find(d, node, "velocity_m_s"), r->why,
+                             "with `dimensions: 2` velocities have no z component; it is %g", term->velocity_m_s[2]);
     if (term->type == MOTION_SINUSOID && term->direction[2] != 0.0)
         return document_fail(d, document_find(d, node, "direction"), r->why, "with `dimensions: 2` a direction has no z component");
     if (term->type == MOTION_ROTATION && (term->axis[0] != 0.0 || term->axis[1] != 0.0))

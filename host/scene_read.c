@@ -80,7 +80,8 @@ static status read_stream(FILE *file, const char *path, char **text, size_t *len
         if (ferror(file))
             return fail(why, STATUS_BAD_INPUT, "%s: cannot be read: %s", path, strerror(errno));
         if (*length > SCENE_BYTES_MAX)
-            return fail(why, STATUS_BAD_INPUT, "%s: larger than %zu MiB; give large tables of particles as csv", path, SCENE_BYTES_MAX >> 20);
+            return fail(why, STATUS_BAD_INPUT, "%s: larger than %zu MiB; give large tables of particles as csv", path,
+                        SCENE_BYTES_MAX >> 20);
         if (got == 0)
             return STATUS_OK;
         if (*length == capacity) {

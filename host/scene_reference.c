@@ -8,11 +8,22 @@
 #include <string.h>
 
 static const char *const type_names[] = {
-    [PARAMETER_NUMBER] = "number",   [PARAMETER_INTEGER] = "whole number", [PARAMETER_FLAG] = "true or false",
-    [PARAMETER_CHOICE] = "word",     [PARAMETER_TEXT] = "text",            [PARAMETER_NAME] = "name",
-    [PARAMETER_VECTOR] = "[x, y, z]", [PARAMETER_DIRECTION] = "[x, y, z], any length", [PARAMETER_COUNTS] = "three whole numbers",
-    [PARAMETER_NUMBERS] = "list of numbers", [PARAMETER_WORDS] = "list of words", [PARAMETER_FLAGS] = "list of words",
-    [PARAMETER_SECTION] = "mapping", [PARAMETER_LIST] = "list of mappings", [PARAMETER_OTHER] = "", [PARAMETER_LATER] = "",
+    [PARAMETER_NUMBER] = "number",
+    [PARAMETER_INTEGER] = "whole number",
+    [PARAMETER_FLAG] = "true or false",
+    [PARAMETER_CHOICE] = "word",
+    [PARAMETER_TEXT] = "text",
+    [PARAMETER_NAME] = "name",
+    [PARAMETER_VECTOR] = "[x, y, z]",
+    [PARAMETER_DIRECTION] = "[x, y, z], any length",
+    [PARAMETER_COUNTS] = "three whole numbers",
+    [PARAMETER_NUMBERS] = "list of numbers",
+    [PARAMETER_WORDS] = "list of words",
+    [PARAMETER_FLAGS] = "list of words",
+    [PARAMETER_SECTION] = "mapping",
+    [PARAMETER_LIST] = "list of mappings",
+    [PARAMETER_OTHER] = "",
+    [PARAMETER_LATER] = "",
 };
 
 /* A `|` would end a cell of the table. */
@@ -121,8 +132,13 @@ static void write_law(FILE *page, const law *l)
         snprintf(shown, sizeof shown, "`%.10g`", option->fallback);
         if (option->choices)
             snprintf(shown, sizeof shown, "`%.*s`", (int)strcspn(option->choices, "|"), option->choices);
-        const parameter row = {.key = option->key, .type = option->choices ? PARAMETER_CHOICE : PARAMETER_NUMBER, .low = option->low,
-                               .high = option->high, .choices = option->choices, .doc = option->doc, .shown = shown,
+        const parameter row = {.key = option->key,
+                               .type = option->choices ? PARAMETER_CHOICE : PARAMETER_NUMBER,
+                               .low = option->low,
+                               .high = option->high,
+                               .choices = option->choices,
+                               .doc = option->doc,
+                               .shown = shown,
                                .unit = parameter_unit(option->key)};
         write_row(page, &row, NULL);
     }
@@ -138,9 +154,11 @@ static void write_outputs(FILE *page, const char *title, const output_name *know
 
 static void write_page(FILE *page)
 {
-    fputs("# Scene reference\n\nGenerated from the parameter table; do not edit. A scene is one YAML document. All numbers are in SI and stand "
+    fputs("# Scene reference\n\nGenerated from the parameter table; do not edit. A scene is one YAML document. All numbers are in SI and "
+          "stand "
           "alone, without a unit. Unknown keys are errors.\n\n`--set path=value` changes any key from the command line: "
-          "`--set walls[floor].point_m=[0,0,1]`, `--set effects[tangential].shear_modulus=mindlin`, `--set interactions[default].restitution=0.3`, "
+          "`--set walls[floor].point_m=[0,0,1]`, `--set effects[tangential].shear_modulus=mindlin`, `--set "
+          "interactions[default].restitution=0.3`, "
           "`--set interactions[steel,floor].friction_static=0.1`, `--set particles[0].items[2].radius_m=1e-3`. Entries of lists go by name "
           "(effects by slot, interactions by what they are between) or by index, counted from 0.\n",
           page);

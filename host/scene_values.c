@@ -48,8 +48,8 @@ static status read_reference(reader *r, const parameter *row, int node, const ch
 
 status read_material(reader *r, const parameter *row, int node, void *target)
 {
-    return read_reference(r, row, node, "material", r->scene->material, r->scene->material_count, sizeof(material), offsetof(material, name),
-                          (int *)((char *)target + row->offset));
+    return read_reference(r, row, node, "material", r->scene->material, r->scene->material_count, sizeof(material),
+                          offsetof(material, name), (int *)((char *)target + row->offset));
 }
 
 status read_wall(reader *r, const parameter *row, int node, void *target)
@@ -95,7 +95,8 @@ status read_between(reader *r, const parameter *row, int node, void *target)
         entry->between[k] = scene_copy(word);
     }
     if (walls == 2)
-        return document_fail(r->document, node, r->why, "`%s` names two walls, which do not interact; name a material and a wall", row->key);
+        return document_fail(r->document, node, r->why, "`%s` names two walls, which do not interact; name a material and a wall",
+                             row->key);
     return STATUS_OK;
 }
 
@@ -146,7 +147,8 @@ static status read_law(reader *r, slot_id slot, int node, const law **out)
     if (*out)
         return STATUS_OK;
     list_laws(slot, list, sizeof list);
-    return document_fail(r->document, node, r->why, "the slot `%s` has no law called `%.60s`; this version has %s", slot_name(slot), word, list);
+    return document_fail(r->document, node, r->why, "the slot `%s` has no law called `%.60s`; this version has %s", slot_name(slot), word,
+                         list);
 }
 
 static status required_key(reader *r, int node, const char *key, const char *doc, int *found)
@@ -183,9 +185,15 @@ static status read_effect(reader *r, int node, effect *out)
     for (int k = 0; k < LAW_OPTIONS_MAX && out->law->options[k].key; k++) {
         const law_option *option = &out->law->options[k];
         snprintf(fallback[k], sizeof fallback[k], "%.17g", option->fallback);
-        rows[3 + k] = (parameter){.key = option->key, .type = option->choices ? PARAMETER_CHOICE : PARAMETER_NUMBER, .low = option->low,
-                                  .high = option->high, .choices = option->choices, .as_number = true, .doc = option->doc,
-                                  .fallback = option->choices ? NULL : fallback[k], .unit = parameter_unit(option->key),
+        rows[3 + k] = (parameter){.key = option->key,
+                                  .type = option->choices ? PARAMETER_CHOICE : PARAMETER_NUMBER,
+                                  .low = option->low,
+                                  .high = option->high,
+                                  .choices = option->choices,
+                                  .as_number = true,
+                                  .doc = option->doc,
+                                  .fallback = option->choices ? NULL : fallback[k],
+                                  .unit = parameter_unit(option->key),
                                   .offset = offsetof(effect, option) + (size_t)k * sizeof(double)};
     }
     char name[128];
@@ -248,8 +256,8 @@ status read_sieve_sizes(reader *r, const parameter *row, int node, void *target)
                              row->key, count, radius->count);
     for (int k = 1; k < count; k++)
         if (radius->size_m[k] <= radius->size_m[k - 1])
-            return document_fail(r->document, document_item(r->document, node, k), r->why, "`%s` must rise from entry to entry; %g follows %g",
-                                 row->key, radius->size_m[k], radius->size_m[k - 1]);
+            return document_fail(r->document, document_item(r->document, node, k), r->why,
+                                 "`%s` must rise from entry to entry; %g follows %g", row->key, radius->size_m[k], radius->size_m[k - 1]);
     return STATUS_OK;
 }
 
@@ -257,8 +265,8 @@ status finish_radius(reader *r, int node, void *target)
 {
     radius_spec *radius = target;
     if (radius->distribution == RADIUS_UNIFORM && radius->low > radius->high)
-        return document_fail(r->document, document_find(r->document, node, "low"), r->why, "`low` (%g m) is above `high` (%g m)", radius->low,
-                             radius->high);
+        return document_fail(r->document, document_find(r->document, node, "low"), r->why, "`low` (%g m) is above `high` (%g m)",
+                             radius->low, radius->high);
     double least = radius->mean - radius->truncate_sigmas * radius->std;
     if (radius->distribution == RADIUS_NORMAL && least <= 0.0)
         return document_fail(r->document, node, r->why,
@@ -384,7 +392,8 @@ status finish_region(reader *r, int node, void *target)
     const particle_group *group = target;
     const double *low = group->region_low_m, *high = group->region_high_m;
     if (r->scene->dimensions == 2 && (low[2] != 0.0 || high[2] != 0.0))
-        return document_fail(r->document, node, r->why, "with `dimensions: 2` a region lies at z = 0; its z runs from %g to %g", low[2], high[2]);
+        return document_fail(r->document, node, r->why, "with `dimensions: 2` a region lies at z = 0; its z runs from %g to %g", low[2],
+                             high[2]);
     return check_corners(r, node, low, high, "low_m", r->scene->dimensions, false);
 }
 
