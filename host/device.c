@@ -7,43 +7,89 @@
 #include <string.h>
 
 #define PLATFORMS_MAX 32
-#define DEVICES_MAX 64 /* of one platform */
+#define DEVICES_MAX   64 /* of one platform */
 
 /* What the loader answers when it finds no platform (cl_khr_icd), which CL/cl.h does not name. */
 #define PLATFORM_NOT_FOUND (-1001)
 
-#define INSTALL_HINT "on Debian or Ubuntu, `apt install pocl-opencl-icd` lets the CPU compute; a GPU needs its vendor's driver"
+#define INSTALL_HINT       "on Debian or Ubuntu, `apt install pocl-opencl-icd` lets the CPU compute; a GPU needs its vendor's driver"
+
+static const struct {
+    cl_int code;
+    const char *name;
+} error_names[] = {
+#define ERROR(name) \
+    {               \
+        name, #name \
+    }
+    ERROR(CL_SUCCESS),
+    ERROR(CL_DEVICE_NOT_FOUND),
+    ERROR(CL_DEVICE_NOT_AVAILABLE),
+    ERROR(CL_COMPILER_NOT_AVAILABLE),
+    ERROR(CL_MEM_OBJECT_ALLOCATION_FAILURE),
+    ERROR(CL_OUT_OF_RESOURCES),
+    ERROR(CL_OUT_OF_HOST_MEMORY),
+    ERROR(CL_PROFILING_INFO_NOT_AVAILABLE),
+    ERROR(CL_MEM_COPY_OVERLAP),
+    ERROR(CL_IMAGE_FORMAT_MISMATCH),
+    ERROR(CL_IMAGE_FORMAT_NOT_SUPPORTED),
+    ERROR(CL_BUILD_PROGRAM_FAILURE),
+    ERROR(CL_MAP_FAILURE),
+    ERROR(CL_MISALIGNED_SUB_BUFFER_OFFSET),
+    ERROR(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST),
+    ERROR(CL_COMPILE_PROGRAM_FAILURE),
+    ERROR(CL_LINKER_NOT_AVAILABLE),
+    ERROR(CL_LINK_PROGRAM_FAILURE),
+    ERROR(CL_DEVICE_PARTITION_FAILED),
+    ERROR(CL_KERNEL_ARG_INFO_NOT_AVAILABLE),
+    ERROR(CL_INVALID_VALUE),
+    ERROR(CL_INVALID_DEVICE_TYPE),
+    ERROR(CL_INVALID_PLATFORM),
+    ERROR(CL_INVALID_DEVICE),
+    ERROR(CL_INVALID_CONTEXT),
+    ERROR(CL_INVALID_QUEUE_PROPERTIES),
+    ERROR(CL_INVALID_COMMAND_QUEUE),
+    ERROR(CL_INVALID_HOST_PTR),
+    ERROR(CL_INVALID_MEM_OBJECT),
+    ERROR(CL_INVALID_IMAGE_FORMAT_DESCRIPTOR),
+    ERROR(CL_INVALID_IMAGE_SIZE),
+    ERROR(CL_INVALID_SAMPLER),
+    ERROR(CL_INVALID_BINARY),
+    ERROR(CL_INVALID_BUILD_OPTIONS),
+    ERROR(CL_INVALID_PROGRAM),
+    ERROR(CL_INVALID_PROGRAM_EXECUTABLE),
+    ERROR(CL_INVALID_KERNEL_NAME),
+    ERROR(CL_INVALID_KERNEL_DEFINITION),
+    ERROR(CL_INVALID_KERNEL),
+    ERROR(CL_INVALID_ARG_INDEX),
+    ERROR(CL_INVALID_ARG_VALUE),
+    ERROR(CL_INVALID_ARG_SIZE),
+    ERROR(CL_INVALID_KERNEL_ARGS),
+    ERROR(CL_INVALID_WORK_DIMENSION),
+    ERROR(CL_INVALID_WORK_GROUP_SIZE),
+    ERROR(CL_INVALID_WORK_ITEM_SIZE),
+    ERROR(CL_INVALID_GLOBAL_OFFSET),
+    ERROR(CL_INVALID_EVENT_WAIT_LIST),
+    ERROR(CL_INVALID_EVENT),
+    ERROR(CL_INVALID_OPERATION),
+    ERROR(CL_INVALID_GL_OBJECT),
+    ERROR(CL_INVALID_BUFFER_SIZE),
+    ERROR(CL_INVALID_MIP_LEVEL),
+    ERROR(CL_INVALID_GLOBAL_WORK_SIZE),
+    ERROR(CL_INVALID_PROPERTY),
+    ERROR(CL_INVALID_IMAGE_DESCRIPTOR),
+    ERROR(CL_INVALID_COMPILER_OPTIONS),
+    ERROR(CL_INVALID_LINKER_OPTIONS),
+    ERROR(CL_INVALID_DEVICE_PARTITION_COUNT),
+#undef ERROR
+    {PLATFORM_NOT_FOUND, "CL_PLATFORM_NOT_FOUND_KHR"},
+};
 
 const char *device_error_name(cl_int code)
 {
-    static const struct {
-        cl_int code;
-        const char *name;
-    } error[] = {
-#define ERROR(name) {name, #name}
-        ERROR(CL_SUCCESS), ERROR(CL_DEVICE_NOT_FOUND), ERROR(CL_DEVICE_NOT_AVAILABLE), ERROR(CL_COMPILER_NOT_AVAILABLE),
-        ERROR(CL_MEM_OBJECT_ALLOCATION_FAILURE), ERROR(CL_OUT_OF_RESOURCES), ERROR(CL_OUT_OF_HOST_MEMORY),
-        ERROR(CL_PROFILING_INFO_NOT_AVAILABLE), ERROR(CL_MEM_COPY_OVERLAP), ERROR(CL_IMAGE_FORMAT_MISMATCH),
-        ERROR(CL_IMAGE_FORMAT_NOT_SUPPORTED), ERROR(CL_BUILD_PROGRAM_FAILURE), ERROR(CL_MAP_FAILURE),
-        ERROR(CL_MISALIGNED_SUB_BUFFER_OFFSET), ERROR(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST), ERROR(CL_COMPILE_PROGRAM_FAILURE),
-        ERROR(CL_LINKER_NOT_AVAILABLE), ERROR(CL_LINK_PROGRAM_FAILURE), ERROR(CL_DEVICE_PARTITION_FAILED),
-        ERROR(CL_KERNEL_ARG_INFO_NOT_AVAILABLE), ERROR(CL_INVALID_VALUE), ERROR(CL_INVALID_DEVICE_TYPE), ERROR(CL_INVALID_PLATFORM),
-        ERROR(CL_INVALID_DEVICE), ERROR(CL_INVALID_CONTEXT), ERROR(CL_INVALID_QUEUE_PROPERTIES), ERROR(CL_INVALID_COMMAND_QUEUE),
-        ERROR(CL_INVALID_HOST_PTR), ERROR(CL_INVALID_MEM_OBJECT), ERROR(CL_INVALID_IMAGE_FORMAT_DESCRIPTOR),
-        ERROR(CL_INVALID_IMAGE_SIZE), ERROR(CL_INVALID_SAMPLER), ERROR(CL_INVALID_BINARY), ERROR(CL_INVALID_BUILD_OPTIONS),
-        ERROR(CL_INVALID_PROGRAM), ERROR(CL_INVALID_PROGRAM_EXECUTABLE), ERROR(CL_INVALID_KERNEL_NAME),
-        ERROR(CL_INVALID_KERNEL_DEFINITION), ERROR(CL_INVALID_KERNEL), ERROR(CL_INVALID_ARG_INDEX), ERROR(CL_INVALID_ARG_VALUE),
-        ERROR(CL_INVALID_ARG_SIZE), ERROR(CL_INVALID_KERNEL_ARGS), ERROR(CL_INVALID_WORK_DIMENSION), ERROR(CL_INVALID_WORK_GROUP_SIZE),
-        ERROR(CL_INVALID_WORK_ITEM_SIZE), ERROR(CL_INVALID_GLOBAL_OFFSET), ERROR(CL_INVALID_EVENT_WAIT_LIST), ERROR(CL_INVALID_EVENT),
-        ERROR(CL_INVALID_OPERATION), ERROR(CL_INVALID_GL_OBJECT), ERROR(CL_INVALID_BUFFER_SIZE), ERROR(CL_INVALID_MIP_LEVEL),
-        ERROR(CL_INVALID_GLOBAL_WORK_SIZE), ERROR(CL_INVALID_PROPERTY), ERROR(CL_INVALID_IMAGE_DESCRIPTOR),
-        ERROR(CL_INVALID_COMPILER_OPTIONS), ERROR(CL_INVALID_LINKER_OPTIONS), ERROR(CL_INVALID_DEVICE_PARTITION_COUNT),
-#undef ERROR
-        {PLATFORM_NOT_FOUND, "CL_PLATFORM_NOT_FOUND_KHR"},
-    };
-    for (size_t k = 0; k < sizeof error / sizeof error[0]; k++)
-        if (error[k].code == code)
-            return error[k].name;
+    for (size_t k = 0; k < sizeof error_names / sizeof error_names[0]; k++)
+        if (error_names[k].code == code)
+            return error_names[k].name;
     return "an error code that OpenCL 1.2 does not define";
 }
 
@@ -61,7 +107,7 @@ static void trim(char *text)
 static void copy_text(char *text, size_t size, char *from)
 {
     trim(from);
-    snprintf(text, size, "%s", from);
+    snprintf(text, size, "%.*s", (int)size - 1, from);
 }
 
 static void device_text(cl_device_id id, cl_device_info what, char *text, size_t size)
@@ -116,8 +162,15 @@ static cl_int read_info(cl_platform_id platform, cl_device_id id, device_info *o
     /* Old drivers answer with an error where they have no fp64. */
     if (clGetDeviceInfo(id, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof fp64, &fp64, NULL) != CL_SUCCESS)
         fp64 = 0;
-    *out = (device_info){.platform = platform, .id = id, .cpu = (type & CL_DEVICE_TYPE_CPU) != 0, .gpu = (type & CL_DEVICE_TYPE_GPU) != 0,
-                         .fp64 = fp64 != 0, .memory_bytes = memory, .buffer_bytes = buffer, .usable_bytes = memory, .compute_units = units,
+    *out = (device_info){.platform = platform,
+                         .id = id,
+                         .cpu = (type & CL_DEVICE_TYPE_CPU) != 0,
+                         .gpu = (type & CL_DEVICE_TYPE_GPU) != 0,
+                         .fp64 = fp64 != 0,
+                         .memory_bytes = memory,
+                         .buffer_bytes = buffer,
+                         .usable_bytes = memory,
+                         .compute_units = units,
                          .argument_bytes = argument};
     /* pocl reports only part of the host's memory, and allocates more. */
     uint64_t available = out->cpu ? available_bytes() : 0;

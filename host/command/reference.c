@@ -1,0 +1,20 @@
+/* clast reference */
+#include "../scene.h"
+#include "command.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct argp reference_argp = {.doc = "Print the reference of all scene keys and laws, as Markdown."};
+
+status command_reference(int argc, char **argv, failure *why)
+{
+    error_t error = argp_parse(&reference_argp, argc, argv, 0, NULL, NULL);
+    if (error)
+        return fail(why, STATUS_ERROR, "%s", strerror(error));
+    char *text = scene_reference();
+    fputs(text, stdout);
+    free(text);
+    return STATUS_OK;
+}

@@ -1,0 +1,140 @@
+/* clast run, clast resume */
+#include "../run.h"
+#include "command.h"
+
+#include <string.h>
+
+enum { KEY_SWEEP = 256, KEY_PRECISION };
+
+typedef struct run_input {
+    run_options options;
+    device_options device;
+    set_options set;
+} run_input;
+
+static void check_precision(const struct argp_state *state, const char *precision)
+{
+    if (strcmp(precision, "mixed") == 0)
+        option_refuse(state, "--precision mixed is not in this version; use double");
+    if (strcmp(precision, "double") != 0 && strcmp(precision, "auto") != 0)
+        option_refuse(state, "--precision: `%s` is none of auto, double", precision);
+}
+
+static error_t parse_run(int key, char *argument, struct argp_state *state)
+{
+    run_input *input = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &input->device;
+        state->child_inputs[1] = &input->set;
+        return 0;
+    case 'o':
+        input->options.out = argument;
+        return 0;
+    case 'q':
+        input->options.quiet = true;
+        return 0;
+    case KEY_PRECISION:
+        check_precision(state, argument);
+        input->options.precision = argument;
+        return 0;
+    case KEY_SWEEP:
+        option_refuse(state, "--sweep is not in this version; run the scene once for each value, with --set");
+    case ARGP_KEY_ARG:
+        option_only(state, &input->options.scene_path, argument);
+        return 0;
+    case ARGP_KEY_END:
+        if (!input->options.scene_path)
+            option_refuse(state, "which scene? Name a SCENE.yaml");
+        if (!input->options.out)
+            option_refuse(state, "where to? Name the results file: --out RESULT.h5");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static error_t parse_resume(int key, char *argument, struct argp_state *state)
+{
+    run_input *input = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &input->device;
+        return 0;
+    case 'o':
+        input->options.out = argument;
+        return 0;
+    case 'q':
+        input->options.quiet = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        option_only(state, &input->options.checkpoint_path, argument);
+        return 0;
+    case ARGP_KEY_END:
+        if (!input->options.checkpoint_path)
+            option_refuse(state, "from where? Name a CHECKPOINT.h5");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_option run_option[] = {
+    {"out", 'o', "RESULT.h5", 0, "Results file; an XDMF file and the checkpoint get the same stem", 0},
+    {"precision", KEY_PRECISION, "P", 0, "auto or double, instead of the scene's", 0},
+    {"sweep", KEY_SWEEP, "PATH=A,B,C", 0, "Run once for each value (not in this version)", 0},
+    {"quiet", 'q', NULL, 0, "Show no progress", 0},
+    {0},
+};
+static const struct argp_child run_children[] = {{.argp = &device_options_argp}, {.argp = &set_options_argp}, {0}};
+static const struct argp run_argp = {
+    .options = run_option,
+    .parser = parse_run,
+    .args_doc = "SCENE.yaml",
+    .doc =
+        "Run a scene from its beginning to its end and write the results.\vCtrl-C ends a run with a checkpoint, from which `clast resume`"
+        " goes on.",
+    .children = run_children,
+};
+
+static const struct argp_option resume_option[] = {
+    {"out", 'o', "RESULT.h5", 0, "Start a new results file instead of going on with the run's own", 0},
+    {"quiet", 'q', NULL, 0, "Show no progress", 0},
+    {0},
+};
+static const struct argp_child resume_children[] = {{.argp = &device_options_argp}, {0}};
+static const struct argp resume_argp = {
+    .options = resume_option,
+    .parser = parse_resume,
+    .args_doc = "CHECKPOINT.h5",
+    .doc =
+        "Go on with a run from its checkpoint.\vThe results go on in the file of the run, from which frames later than the checkpoint are"
+        " cut first, or in a new file with --out.",
+    .children = resume_children,
+};
+
+static status start(run_input *input, status (*run)(const run_options *options, failure *why), failure *why)
+{
+    input->options.device = input->device.device;
+    input->options.kernels = input->device.kernels;
+    input->options.set_count = input->set.count;
+    input->options.sets = input->set.value;
+    run_catch_signals();
+    status result = run(&input->options, why);
+    set_options_free(&input->set);
+    return result;
+}
+
+status command_run(int argc, char **argv, failure *why)
+{
+    run_input input = {0};
+    error_t error = argp_parse(&run_argp, argc, argv, 0, NULL, &input);
+    return error ? fail(why, STATUS_ERROR, "%s", strerror(error)) : start(&input, run_scene, why);
+}
+
+status command_resume(int argc, char **argv, failure *why)
+{
+    run_input input = {0};
+    error_t error = argp_parse(&resume_argp, argc, argv, 0, NULL, &input);
+    return error ? fail(why, STATUS_ERROR, "%s", strerror(error)) : start(&input, run_resume, why);
+}
