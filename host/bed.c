@@ -127,13 +127,13 @@ static status check_numbers(const scene *s, const bed *b, int64_t i, int64_t ind
     for (int d = 0; d < 3; d++) {
         if (!isfinite(b->position[i][d]))
             return bed_refuse(s, group, why, "particle %" PRId64 " has %c = %g m; positions must be finite", index, "xyz"[d],
-                              b->position[i][d]);
+                              b -> position[i][d]);
         if (!isfinite(b->velocity[i][d]))
             return bed_refuse(s, group, why, "particle %" PRId64 " has v%c = %g m/s; velocities must be finite", index, "xyz"[d],
-                              b->velocity[i][d]);
+                              b -> velocity[i][d]);
         if (!isfinite(b->spin[i][d]))
             return bed_refuse(s, group, why, "particle %" PRId64 " has w%c = %g rad/s; spins must be finite", index, "xyz"[d],
-                              b->spin[i][d]);
+                              b -> spin[i][d]);
     }
     if (!(b->radius[i] > 0.0 && isfinite(b->radius[i])))
         return bed_refuse(s, group, why, "particle %" PRId64 " has radius %g m; it must be above 0 and finite", index, b->radius[i]);
@@ -154,7 +154,7 @@ static status place_in_domain(const scene *s, bed *b, int64_t i, int64_t index, 
         *x = sphere_wrap(&space, d, *x);
         if (!(*x >= box->low_m[d] && *x <= box->high_m[d]))
             return bed_refuse(s, b->group[i], why, "particle %" PRId64 " is at %c = %.9g m, outside the domain (%.9g to %.9g m)", index,
-                              "xyz"[d], *x, box->low_m[d], box->high_m[d]);
+                              "xyz"[d], *x, box -> low_m[d], box -> high_m[d]);
     }
     return STATUS_OK;
 }

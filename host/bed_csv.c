@@ -41,10 +41,11 @@ static status next_line(table *t, char **text, failure *why)
     t->line_number++;
     while ((c = getc_unlocked(t->file)) != EOF && c != '\n') {
         if (c == '\0')
-            return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": byte %zu is zero; this is not a text file", t->path, t->line_number, length + 1);
+            return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": byte %zu is zero; this is not a text file", t->path, t->line_number,
+                        length + 1);
         if (length == LINE_MAX_BYTES - 1)
-            return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": the line is longer than %d bytes; this is not a table of particles", t->path,
-                        t->line_number, LINE_MAX_BYTES - 1);
+            return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": the line is longer than %d bytes; this is not a table of particles",
+                        t->path, t->line_number, LINE_MAX_BYTES - 1);
         t->line[length++] = (char)c;
     }
     if (c == EOF && ferror(t->file))
@@ -99,7 +100,8 @@ static status read_header(table *t, bool radius_given, failure *why)
     char *text;
     TRY(next_content(t, &text, why));
     if (!text)
-        return fail(why, STATUS_BAD_INPUT, "%s: the file is empty; it needs a line of column names (x_m,y_m,z_m,radius_m) and rows", t->path);
+        return fail(why, STATUS_BAD_INPUT, "%s: the file is empty; it needs a line of column names (x_m,y_m,z_m,radius_m) and rows",
+                    t->path);
     while (text) {
         const char *name = next_cell(&text);
         int k = 0;
@@ -107,7 +109,8 @@ static status read_header(table *t, bool radius_given, failure *why)
             k++;
         if (k == COLUMN_COUNT)
             return fail(why, STATUS_BAD_INPUT,
-                        "%s:%" PRId64 ": column `%.60s` is unknown; known are x_m, y_m, z_m, radius_m, vx_m_s, vy_m_s, vz_m_s, wx_rad_s, wy_rad_s, "
+                        "%s:%" PRId64
+                        ": column `%.60s` is unknown; known are x_m, y_m, z_m, radius_m, vx_m_s, vy_m_s, vz_m_s, wx_rad_s, wy_rad_s, "
                         "wz_rad_s and temperature_k, separated by commas",
                         t->path, t->line_number, name);
         if (t->present[k])
@@ -127,9 +130,11 @@ static status read_cell(const table *t, column k, const char *cell, double *valu
     char *end;
     *value = strtod(cell, &end);
     if (end == cell || *end != '\0')
-        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": %s is `%.60s`, which is not a number", t->path, t->line_number, column_names[k], cell);
+        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": %s is `%.60s`, which is not a number", t->path, t->line_number, column_names[k],
+                    cell);
     if (!isfinite(*value))
-        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": %s is `%.60s`; it must be finite", t->path, t->line_number, column_names[k], cell);
+        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": %s is `%.60s`; it must be finite", t->path, t->line_number, column_names[k],
+                    cell);
     if (k == RADIUS && !(*value > 0.0))
         return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": radius_m is `%.60s`; it must be above 0", t->path, t->line_number, cell);
     if (k == TEMPERATURE && *value < 0.0)
@@ -151,7 +156,8 @@ static status read_row(table *t, char *text, failure *why)
     for (const char *c = text; *c; c++)
         cells += *c == ',';
     if (cells != t->column_count)
-        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": the row has %d columns, the header %d", t->path, t->line_number, cells, t->column_count);
+        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": the row has %d columns, the header %d", t->path, t->line_number, cells,
+                    t->column_count);
     for (int k = 0; k < t->column_count; k++)
         TRY(read_cell(t, t->columns[k], next_cell(&text), &t->row[t->count][t->columns[k]], why));
     t->count++;

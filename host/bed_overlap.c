@@ -73,7 +73,8 @@ double bed_largest_overlap(const bed *b, const domain *box, int64_t *i, int64_t 
         compare_own_image(b, &space, k, &worst);
     }
     int32_t *order = malloc((size_t)b->count * sizeof *order + 1);
-    if (!order || !sphere_order(b->count, (const double (*)[3])b->position, b->radius, order) || !compare_near(b, &space, order, top, &worst))
+    if (!order || !sphere_order(b->count, (const double(*)[3])b->position, b->radius, order) ||
+        !compare_near(b, &space, order, top, &worst))
         compare_all(b, &space, &worst);
     free(order);
     if (i)

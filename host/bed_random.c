@@ -43,7 +43,8 @@ static status set_region(const scene *s, int group, packing *p, failure *why)
         p->low[d] = g->region_given ? g->region_low_m[d] : box->low_m[d];
         p->high[d] = g->region_given ? g->region_high_m[d] : box->high_m[d];
         if (!(p->low[d] < p->high[d] && isfinite(p->high[d] - p->low[d])))
-            return bed_refuse(s, group, why, "region goes from %g to %g m along %c; low must be below high", p->low[d], p->high[d], "xyz"[d]);
+            return bed_refuse(s, group, why, "region goes from %g to %g m along %c; low must be below high", p->low[d], p->high[d],
+                              "xyz"[d]);
         double slack = 1.0e-9 * p->space.length[d];
         if (p->space.periodic[d] && p->low[d] <= box->low_m[d] + slack && p->high[d] >= box->high_m[d] - slack) {
             p->open[d] = true;
@@ -98,8 +99,8 @@ static status check_sizes(const scene *s, int group, const packing *p, int64_t m
     for (int64_t i = 0; i < moving; i++)
         for (int d = 0; d < p->dimensions; d++)
             if (2.0 * p->radius[i] > p->high[d] - p->low[d])
-                return bed_refuse(s, group, why, "particle %" PRId64 " of radius %.6g m does not fit into the region, %.6g m wide along %c", i,
-                                  p->radius[i], p->high[d] - p->low[d], "xyz"[d]);
+                return bed_refuse(s, group, why, "particle %" PRId64 " of radius %.6g m does not fit into the region, %.6g m wide along %c",
+                                  i, p->radius[i], p->high[d] - p->low[d], "xyz"[d]);
     return STATUS_OK;
 }
 
@@ -125,7 +126,8 @@ static bool has_room_for(const packing *p, int64_t moving, int64_t count, uint64
         memcpy(part.radius + count, p->radius + moving, (size_t)obstacles * sizeof *part.radius);
         memcpy(part.position + count, p->position + moving, (size_t)obstacles * sizeof *part.position);
         memcpy(part.fixed + count, p->fixed + moving, (size_t)obstacles * sizeof *part.fixed);
-        fits = packing_insert(&part, seed, (uint32_t)group, &overlap) && (!overlap || packing_relax(&part, 0.0, &reached)) && reached == 1.0;
+        fits = packing_insert(&part, seed, (uint32_t)group, &overlap) && (!overlap || packing_relax(&part, 0.0, &reached)) &&
+               reached == 1.0;
     }
     free(part.position);
     free(part.radius);
@@ -145,12 +147,14 @@ static status refuse_fraction(const scene *s, int group, const packing *p, int64
         count -= 1 + count / 25;
     char advice[96] = "";
     if (count > 0)
-        snprintf(advice, sizeof advice, "at most %" PRId64 " particles (a fraction of %.3f) or ", count, grains_size(p, count) / region_size(p));
+        snprintf(advice, sizeof advice, "at most %" PRId64 " particles (a fraction of %.3f) or ", count,
+                 grains_size(p, count) / region_size(p));
     return bed_refuse(s, group, why,
-                      "%" PRId64 " particles are %s fraction of %.3f of their region (%.6g %s), which cannot be reached without overlap; ask "
+                      "%" PRId64
+                      " particles are %s fraction of %.3f of their region (%.6g %s), which cannot be reached without overlap; ask "
                       "for %sa region of at least %.6g %s",
-                      moving, flat ? "an area" : "a volume", asked, region_size(p), flat ? "m2" : "m3", advice, region_size(p) * asked / fits,
-                      flat ? "m2" : "m3");
+                      moving, flat ? "an area" : "a volume", asked, region_size(p), flat ? "m2" : "m3", advice,
+                      region_size(p) * asked / fits, flat ? "m2" : "m3");
 }
 
 static status pack(const scene *s, int group, packing *p, int64_t moving, failure *why)
@@ -175,7 +179,7 @@ status bed_random(const scene *s, int group, bed *b, failure *why)
     TRY(bed_draw_radii(s, group, b, first, why));
     int64_t moving = b->count - first;
     status result = fill_packing(b, first, &p) ? pack(s, group, &p, moving, why)
-                                                 : fail(why, STATUS_ERROR, "out of memory while packing %" PRId64 " particles", moving);
+                                               : fail(why, STATUS_ERROR, "out of memory while packing %" PRId64 " particles", moving);
     if (result == STATUS_OK)
         memcpy(b->position + first, p.position, (size_t)moving * sizeof *p.position);
     free(p.position);

@@ -126,9 +126,9 @@ typedef struct pair {
 typedef struct relaxation {
     packing p;
     int32_t *order;
-    double *mobility;        /* 1/r^3, 0 for obstacles: a push moves the small sphere */
-    double (*built)[3];      /* positions at the last list */
-    double scale;            /* of all radii, below 1 while looking for what would fit */
+    double *mobility;   /* 1/r^3, 0 for obstacles: a push moves the small sphere */
+    double (*built)[3]; /* positions at the last list */
+    double scale;       /* of all radii, below 1 while looking for what would fit */
     pair *pairs;
     int64_t pair_count, pair_capacity;
     sphere_grid grid;
@@ -160,7 +160,7 @@ static bool relaxation_init(const packing *p, relaxation *r)
     r->built = malloc(n * sizeof *r->built + 1);
     if (!r->p.position || !r->p.radius || !r->p.fixed || !r->order || !r->mobility || !r->built)
         return false;
-    if (!sphere_order(p->count, (const double (*)[3])p->position, p->radius, r->order))
+    if (!sphere_order(p->count, (const double(*)[3])p->position, p->radius, r->order))
         return false;
     double top = 0.0;
     for (int64_t k = 0; k < p->count; k++)
@@ -231,6 +231,8 @@ static bool list_pairs(relaxation *r)
 /* The faces see the scaled radius: shrinking everything is then the same as a larger box. */
 static void shift(packing *p, double scale, int32_t i, const double branch[3], double share)
 {
+    if (p->fixed[i]) /* may reach through a face */
+        return;
     for (int d = 0; d < p->dimensions; d++) {
         double x = p->position[i][d] + share * branch[d];
         if (!p->open[d]) {

@@ -51,7 +51,8 @@ static status sieve_init(const radius_spec *spec, radius_sampler *out, failure *
 static status normal_init(const radius_spec *spec, radius_sampler *out, failure *why)
 {
     if (!(spec->mean > 0.0 && isfinite(spec->mean) && spec->std >= 0.0 && isfinite(spec->std)))
-        return fail(why, STATUS_BAD_INPUT, "radius_m: mean %g and std %g m; the mean must be above 0 and the std 0 or more", spec->mean, spec->std);
+        return fail(why, STATUS_BAD_INPUT, "radius_m: mean %g and std %g m; the mean must be above 0 and the std 0 or more", spec->mean,
+                    spec->std);
     double ratio = spec->std / spec->mean;
     double variance = portable_log(1.0 + ratio * ratio);
     out->log_std = sqrt(variance);
@@ -69,8 +70,8 @@ status radius_sampler_init(const radius_spec *spec, radius_sampler *out, failure
         return STATUS_OK;
     case RADIUS_UNIFORM:
         if (!(spec->low > 0.0 && spec->high >= spec->low && isfinite(spec->high)))
-            return fail(why, STATUS_BAD_INPUT, "radius_m: uniform from low %g to high %g m; low must be above 0 and not above high", spec->low,
-                        spec->high);
+            return fail(why, STATUS_BAD_INPUT, "radius_m: uniform from low %g to high %g m; low must be above 0 and not above high",
+                        spec->low, spec->high);
         return STATUS_OK;
     case RADIUS_NORMAL:
     case RADIUS_LOGNORMAL:

@@ -30,7 +30,7 @@ typedef struct sphere_grid {
         int64_t members;
         double radius_max;
         double cell[3];
-        int64_t cells[3];        /* along periodic directions */
+        int64_t cells[3];          /* along periodic directions */
         int64_t first[3], last[3]; /* occupied */
     } level[SPHERE_GRID_LEVELS];
     uint64_t mask;

@@ -10,8 +10,9 @@ static void list_takes_items_as_they_are(void **state)
     (void)state;
     particle_group g;
     scene s = case_scene(&g, 3);
-    particle_item items[] = {{.position_m = {1, 2, 3}, .radius_m = 0.1, .velocity_m_s = {4, 5, 6}, .spin_rad_s = {7, 8, 9}, .temperature_k = 400},
-                             {.position_m = {-1, 0, 2}, .radius_m = 0.2, .velocity_m_s = {NAN, NAN, NAN}, .temperature_k = NAN}};
+    particle_item items[] = {
+        {.position_m = {1, 2, 3}, .radius_m = 0.1, .velocity_m_s = {4, 5, 6}, .spin_rad_s = {7, 8, 9}, .temperature_k = 400},
+        {.position_m = {-1, 0, 2}, .radius_m = 0.2, .velocity_m_s = {NAN, NAN, NAN}, .temperature_k = NAN}};
     g.generator = GENERATOR_LIST;
     g.item = items;
     g.item_count = 2;
@@ -63,8 +64,14 @@ static void groups_follow_each_other(void **state)
 
 static particle_group lattice_group(lattice kind, int64_t nx, int64_t ny, int64_t nz, double spacing)
 {
-    return (particle_group){.name = "rows", .generator = GENERATOR_LATTICE, .lattice = kind, .counts = {nx, ny, nz}, .spacing_m = spacing,
-                            .origin_m = {0.1, 0.2, 0.3}, .radius_m = {.value = 0.5 * spacing * (1.0 - 1.0e-12)}, .temperature_k = NAN};
+    return (particle_group){.name = "rows",
+                            .generator = GENERATOR_LATTICE,
+                            .lattice = kind,
+                            .counts = {nx, ny, nz},
+                            .spacing_m = spacing,
+                            .origin_m = {0.1, 0.2, 0.3},
+                            .radius_m = {.value = 0.5 * spacing * (1.0 - 1.0e-12)},
+                            .temperature_k = NAN};
 }
 
 /* Neighbours within 1 % of the spacing of the grain nearest to the middle. */
@@ -97,7 +104,8 @@ static void lattices_are_what_they_are_called(void **state)
         lattice kind;
         int neighbours;
         double rise[3], fraction; /* step of the last count's direction; volume fraction of an endless lattice */
-    } expected[] = {{LATTICE_SIMPLE_CUBIC, 6, {1, 1, 1}, PI / 6.0}, {LATTICE_HEXAGONAL, 12, {1, sqrt(0.75), sqrt(2.0 / 3.0)}, PI / sqrt(18.0)}};
+    } expected[] = {{LATTICE_SIMPLE_CUBIC, 6, {1, 1, 1}, PI / 6.0},
+                    {LATTICE_HEXAGONAL, 12, {1, sqrt(0.75), sqrt(2.0 / 3.0)}, PI / sqrt(18.0)}};
     double spacing = 1.5e-3;
     for (int k = 0; k < 2; k++) {
         particle_group g = lattice_group(expected[k].kind, 7, 8, 9, spacing);
@@ -202,7 +210,8 @@ static void write_result(const char *path)
                                     {.name = "velocity", .unit = "m s-1", .components = 3},
                                     {.name = "spin", .unit = "rad s-1", .components = 3},
                                     {.name = "radius", .unit = "m", .components = 1, .constant = true}};
-    results_spec spec = {.count = 3, .field_count = 4, .field = fields, .scene_text = "", .plan_text = "", .version_text = "", .device_text = ""};
+    results_spec spec = {
+        .count = 3, .field_count = 4, .field = fields, .scene_text = "", .plan_text = "", .version_text = "", .device_text = ""};
     results *r;
     failure why = {0};
     double position[] = {1, 2, 3, NAN, NAN, NAN, 4, 5, 6}, velocity[] = {7, 8, 9, NAN, NAN, NAN, 10, 11, 12};
@@ -250,9 +259,12 @@ static void a_frame_of_a_result_goes_on(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(list_takes_items_as_they_are), cmocka_unit_test(groups_follow_each_other),
-                                       cmocka_unit_test(lattices_are_what_they_are_called), cmocka_unit_test(triangular_rows),
-                                       cmocka_unit_test(bad_lattices), cmocka_unit_test(shared_checks),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(list_takes_items_as_they_are),
+                                       cmocka_unit_test(groups_follow_each_other),
+                                       cmocka_unit_test(lattices_are_what_they_are_called),
+                                       cmocka_unit_test(triangular_rows),
+                                       cmocka_unit_test(bad_lattices),
+                                       cmocka_unit_test(shared_checks),
                                        cmocka_unit_test(a_frame_of_a_result_goes_on)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -169,7 +169,8 @@ static void a_million_rows(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(columns_by_name), cmocka_unit_test(radius_of_the_scene), cmocka_unit_test(bad_tables),
-                                       cmocka_unit_test(files_that_are_no_tables), cmocka_unit_test(a_million_rows)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(columns_by_name), cmocka_unit_test(radius_of_the_scene),
+                                       cmocka_unit_test(bad_tables), cmocka_unit_test(files_that_are_no_tables),
+                                       cmocka_unit_test(a_million_rows)};
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

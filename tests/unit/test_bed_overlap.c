@@ -32,8 +32,8 @@ static void agrees_with_every_pair(void **state)
     struct {
         double size[3], small, large;
         bool periodic[3];
-    } cases[] = {{{1, 1, 1}, 0.01, 0.01, {false, false, false}}, {{1, 1, 1}, 1.0e-4, 0.01, {true, true, true}},
-                 {{1, 1, 1}, 1.0e-3, 0.1, {true, false, false}}, {{1, 1, 0}, 1.0e-3, 5.0e-3, {true, false, false}},
+    } cases[] = {{{1, 1, 1}, 0.01, 0.01, {false, false, false}},     {{1, 1, 1}, 1.0e-4, 0.01, {true, true, true}},
+                 {{1, 1, 1}, 1.0e-3, 0.1, {true, false, false}},     {{1, 1, 0}, 1.0e-3, 5.0e-3, {true, false, false}},
                  {{1, 0, 0}, 1.0e-5, 1.0e-3, {false, false, false}}, {{0.1, 1, 1}, 0.01, 0.02, {true, true, false}},
                  {{1.0e6, 1, 1}, 1.0e-3, 0.2, {false, true, false}}, {{0.05, 0.05, 10}, 0.01, 0.02, {true, true, false}}};
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
@@ -110,6 +110,7 @@ static void a_million(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(agrees_with_every_pair), cmocka_unit_test(two_spheres), cmocka_unit_test(a_million)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(agrees_with_every_pair), cmocka_unit_test(two_spheres),
+                                       cmocka_unit_test(a_million)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

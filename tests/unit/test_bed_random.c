@@ -8,7 +8,8 @@ static scene random_case(particle_group *g, int dimensions, int64_t count, doubl
 {
     scene s = case_scene(g, dimensions);
     double a = 1.0e-3 * (1.0 - spread), b = 1.0e-3 * (1.0 + spread);
-    double side = dimensions == 2 ? sqrt((double)count * mean_area_uniform(a, b) / fraction) : cbrt((double)count * mean_volume_uniform(a, b) / fraction);
+    double side = dimensions == 2 ? sqrt((double)count * mean_area_uniform(a, b) / fraction)
+                                  : cbrt((double)count * mean_volume_uniform(a, b) / fraction);
     g->generator = GENERATOR_RANDOM;
     g->count = count;
     g->radius_m = radius_uniform(a, b);
@@ -49,8 +50,8 @@ static void nothing_overlaps(void **state)
         int64_t count;
         double fraction, spread;
         bool periodic;
-    } cases[] = {{3, 1, 0.1, 0, false},       {3, 2, 0.05, 0.1, true},   {3, 2000, 0.05, 0.5, false}, {3, 2000, 0.3, 0.1, false},
-                 {3, 3000, 0.55, 0.1, false}, {3, 3000, 0.55, 0, true},  {3, 3000, 0.55, 0.9, false}, {3, 300, 0.5, 0.1, true},
+    } cases[] = {{3, 1, 0.1, 0, false},       {3, 2, 0.05, 0.1, true},    {3, 2000, 0.05, 0.5, false}, {3, 2000, 0.3, 0.1, false},
+                 {3, 3000, 0.55, 0.1, false}, {3, 3000, 0.55, 0, true},   {3, 3000, 0.55, 0.9, false}, {3, 300, 0.5, 0.1, true},
                  {2, 2000, 0.4, 0.1, false},  {2, 2000, 0.75, 0.1, true}, {2, 2000, 0.72, 0.5, false}};
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         particle_group g;
@@ -137,7 +138,7 @@ static void groups_elsewhere_do_not_matter(void **state)
     bed_free(&b);
 }
 
-/* Earlier grains inside the region, large and small, across a periodic face too, stay where they are and are kept clear of. */
+/* Earlier grains inside the region, large and small, and one that reaches in across a periodic face, stay where they are and are kept clear of. */
 static void earlier_groups_are_obstacles(void **state)
 {
     (void)state;
@@ -146,12 +147,13 @@ static void earlier_groups_are_obstacles(void **state)
     double side = g[1].region_high_m[0] - g[1].region_low_m[0];
     particle_item items[] = {{.radius_m = 0.2 * side, .temperature_k = NAN},
                              {.position_m = {0.5 * side, 0.5 * side, 0.5 * side}, .radius_m = 1.0e-4, .temperature_k = NAN},
-                             {.position_m = {-0.25 * side + 1.0e-6, 0.4 * side, 0}, .radius_m = 3.0e-3, .temperature_k = NAN}};
+                             {.position_m = {side - 1.0e-6, 0.4 * side, 0}, .radius_m = 3.0e-3, .temperature_k = NAN}};
     g[0] = (particle_group){.name = "stones", .generator = GENERATOR_LIST, .item = items, .item_count = 3, .temperature_k = NAN};
     g[1].count = 1200;
     s.group = g;
     s.group_count = 2;
-    s.domain = (domain){.given = true, .low_m = {-0.25 * side, -side, -side}, .high_m = {0.75 * side, side, side}, .periodic = {true, false, false}};
+    s.domain = (domain){
+        .given = true, .low_m = {-0.25 * side, -side, -side}, .high_m = {side, side, side}, .periodic = {true, false, false}};
     bed b = case_generate(&s);
     assert_int_equal(b.count, 1203);
     assert_true(b.position[0][0] == 0.0 && b.radius[2] == 3.0e-3);
@@ -207,8 +209,8 @@ static void what_cannot_be_reached_is_refused(void **state)
     for (int dimensions = 2; dimensions <= 3; dimensions++) {
         particle_group g;
         scene s = random_case(&g, dimensions, 1000, dimensions == 2 ? 0.9 : 0.75, 0);
-        REFUSED(&s, "scene.yaml:12:5: particles[bed]: 1000 particles", dimensions == 2 ? "an area fraction of 0.900" : "a volume fraction of 0.750",
-                "ask for at most");
+        REFUSED(&s, "scene.yaml:12:5: particles[bed]: 1000 particles",
+                dimensions == 2 ? "an area fraction of 0.900" : "a volume fraction of 0.750", "ask for at most");
     }
     particle_group g;
     scene s = random_case(&g, 3, 1000, 5.0, 0);

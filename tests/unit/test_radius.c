@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #define DRAWS 200000
-#define PI 3.14159265358979323846
+#define PI    3.14159265358979323846
 
 /* Sample mean and variance held against closed forms: within 5 standard errors, the fourth moment estimated from the sample. */
 static void assert_moments(const radius_spec *spec, double mean, double variance, double low, double high)
@@ -82,9 +82,11 @@ static void lognormal(void **state)
     assert_moments(&spec, mean, std * std, 0.0, INFINITY);
     double s2 = log(1.0 + std * std / mean / mean), s = sqrt(s2), mu = log(mean) - 0.5 * s2, moment[3];
     for (int n = 1; n <= 2; n++)
-        moment[n] = exp(n * mu + 0.5 * n * n * s2) * 0.5 * (erf((k - n * s) / sqrt(2.0)) - erf((-k - n * s) / sqrt(2.0))) / erf(k / sqrt(2.0));
+        moment[n] = exp(n * mu + 0.5 * n * n * s2) * 0.5 * (erf((k - n * s) / sqrt(2.0)) - erf((-k - n * s) / sqrt(2.0))) /
+                    erf(k / sqrt(2.0));
     spec.truncate_sigmas = k;
-    assert_moments(&spec, moment[1], moment[2] - moment[1] * moment[1], exp(mu - k * s) * (1.0 - 1.0e-12), exp(mu + k * s) * (1.0 + 1.0e-12));
+    assert_moments(&spec, moment[1], moment[2] - moment[1] * moment[1], exp(mu - k * s) * (1.0 - 1.0e-12),
+                   exp(mu + k * s) * (1.0 + 1.0e-12));
 }
 
 /* The mass passing a sieve is the sum of the fractions below it, and half of a class's mass lies below the middle of its sizes. The number of
@@ -138,13 +140,14 @@ static void bad_numbers(void **state)
     refused(&(radius_spec){.distribution = RADIUS_SIEVE}, "at least one class");
     refused(&(radius_spec){.distribution = RADIUS_SIEVE, .count = 1, .size_m = falling, .mass_fraction = one}, "from 0.002 to 0.001 m");
     refused(&(radius_spec){.distribution = RADIUS_SIEVE, .count = 1, .size_m = zero, .mass_fraction = one}, "from 0 to 0.001 m");
-    refused(&(radius_spec){.distribution = RADIUS_SIEVE, .count = 1, .size_m = good, .mass_fraction = minus}, "fraction 0 of the sieve curve is -1");
+    refused(&(radius_spec){.distribution = RADIUS_SIEVE, .count = 1, .size_m = good, .mass_fraction = minus},
+            "fraction 0 of the sieve curve is -1");
     refused(&(radius_spec){.distribution = RADIUS_SIEVE, .count = 1, .size_m = good, .mass_fraction = none}, "all 0");
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(number), cmocka_unit_test(uniform), cmocka_unit_test(normal),
-                                       cmocka_unit_test(lognormal), cmocka_unit_test(sieve), cmocka_unit_test(bad_numbers)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(number),    cmocka_unit_test(uniform), cmocka_unit_test(normal),
+                                       cmocka_unit_test(lognormal), cmocka_unit_test(sieve),   cmocka_unit_test(bad_numbers)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

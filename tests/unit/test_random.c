@@ -21,9 +21,12 @@ static void known_answer(void **state)
 static void streams_differ_by_every_part_of_the_key(void **state)
 {
     (void)state;
-    random_stream stream[] = {random_start(7, 1, RANDOM_RADIUS, 5), random_start(8, 1, RANDOM_RADIUS, 5),
-                              random_start(7 + (UINT64_C(1) << 32), 1, RANDOM_RADIUS, 5), random_start(7, 2, RANDOM_RADIUS, 5),
-                              random_start(7, 1, RANDOM_POSITION, 5), random_start(7, 1, RANDOM_RADIUS, 6)};
+    random_stream stream[] = {random_start(7, 1, RANDOM_RADIUS, 5),
+                              random_start(8, 1, RANDOM_RADIUS, 5),
+                              random_start(7 + (UINT64_C(1) << 32), 1, RANDOM_RADIUS, 5),
+                              random_start(7, 2, RANDOM_RADIUS, 5),
+                              random_start(7, 1, RANDOM_POSITION, 5),
+                              random_start(7, 1, RANDOM_RADIUS, 6)};
     double value[6];
     for (int i = 0; i < 6; i++) {
         value[i] = random_uniform(&stream[i]);
