@@ -40,9 +40,9 @@ static status next_line(table *t, char **text, failure *why)
     int c;
     t->line_number++;
     while ((c = getc_unlocked(t->file)) != EOF && c != '\n') {
-        if (c == '\0')
-            return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": byte %zu is zero; this is not a text file", t->path, t->line_number,
-                        length + 1);
+        if (c < ' ' && c != '\t' && c != '\r')
+            return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": byte %zu is 0x%02x; this is not a text file", t->path, t->line_number,
+                        length + 1, (unsigned)c);
         if (length == LINE_MAX_BYTES - 1)
             return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": the line is longer than %d bytes; this is not a table of particles",
                         t->path, t->line_number, LINE_MAX_BYTES - 1);

@@ -126,7 +126,7 @@ static void files_that_are_no_tables(void **state)
     REFUSED(&s, "needs a path");
     g.path = f->file;
     write_file(f->file, "x_m,y_m,z_m,radius_m\n0,0\0,0,1\n", 30);
-    REFUSED(&s, "grains.csv:2: byte 4 is zero; this is not a text file");
+    REFUSED(&s, "grains.csv:2: byte 4 is 0x00; this is not a text file");
     size_t length = 1 << 20;
     char *bytes = malloc(length);
     memset(bytes, '7', length);
