@@ -15,6 +15,7 @@ typedef struct piece {
     off_t at;
     size_t size;
     unsigned char *bytes;
+    int order; /* as written */
 } piece;
 
 struct commit_file {
@@ -27,6 +28,7 @@ struct commit_file {
     off_t committed; /* size of the file at the last flush: bytes below belong to it */
     int count, capacity;
     piece *waiting;
+    bool overlapping; /* some of them overlap: then they must go out as they came */
 };
 
 typedef struct driver_file {
@@ -52,8 +54,27 @@ static bool put(commit_file *file, off_t at, const unsigned char *bytes, size_t 
     return true;
 }
 
+/* True when the bytes replace a waiting piece. More pieces than this are only written when much is cut, and then in the given order. */
+static bool replaced(commit_file *file, off_t at, const unsigned char *bytes, size_t size)
+{
+    if (file->count > 4096)
+        file->overlapping = true;
+    for (int k = 0; k < file->count && !file->overlapping; k++) {
+        piece *p = &file->waiting[k];
+        if (p->at == at && p->size == size) {
+            memcpy(p->bytes, bytes, size);
+            return true;
+        }
+        if (p->at < at + (off_t)size && at < p->at + (off_t)p->size)
+            file->overlapping = true;
+    }
+    return false;
+}
+
 static bool keep(commit_file *file, off_t at, const unsigned char *bytes, size_t size)
 {
+    if (replaced(file, at, bytes, size))
+        return true;
     if (file->count == file->capacity) {
         int capacity = file->capacity ? 2 * file->capacity : 64;
         piece *grown = realloc(file->waiting, (size_t)capacity * sizeof *grown);
@@ -70,7 +91,8 @@ static bool keep(commit_file *file, off_t at, const unsigned char *bytes, size_t
         return false;
     }
     memcpy(copy, bytes, size);
-    file->waiting[file->count++] = (piece){at, size, copy};
+    file->waiting[file->count] = (piece){at, size, copy, file->count};
+    file->count++;
     return true;
 }
 
@@ -79,6 +101,26 @@ static void forget(commit_file *file)
     for (int k = 0; k < file->count; k++)
         free(file->waiting[k].bytes);
     file->count = 0;
+    file->overlapping = false;
+}
+
+/* A kill between two of the writes of a commit must not hurt the frames before. So chunk indices come first, parents before children (a
+ * split child still holds what its new sibling, already in the file, took over), and then the object headers, whose extents show the
+ * new rows. Within these the order of addresses stays: what is created last is committed last. */
+static int rank(const piece *p)
+{
+    if (p->size >= 6 && memcmp(p->bytes, "TREE", 4) == 0)
+        return 256 - p->bytes[5]; /* the level; leaves are 0 */
+    if (p->size >= 4 && (memcmp(p->bytes, "OHDR", 4) == 0 || memcmp(p->bytes, "OCHK", 4) == 0))
+        return 257;
+    return 0;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const piece *p = a, *q = b;
+    int difference = rank(p) - rank(q);
+    return difference ? difference : p->order - q->order;
 }
 
 static H5FD_t *driver_open(const char *name, unsigned flags, hid_t access, haddr_t largest)
@@ -102,9 +144,23 @@ static herr_t driver_close(H5FD_t *base)
 static herr_t driver_query(const H5FD_t *base, unsigned long *flags)
 {
     (void)base;
-    /* no data sieve: it reads a block to write a row */
-    *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_AGGREGATE_SMALLDATA;
+    /* No data sieve: it reads a block to write a row. No accumulator: each write is to be one structure, see rank(). No aggregation: it
+     * would place structures without driver_alloc(). */
+    *flags = 0;
     return 0;
+}
+
+/* A kill stops a write between two pages, never inside one. So a structure that will be rewritten in place must not cross a page. */
+static haddr_t driver_alloc(H5FD_t *base, H5FD_mem_t type, hid_t transfer, hsize_t size)
+{
+    (void)transfer;
+    driver_file *file = (driver_file *)base;
+    const haddr_t page = 4096;
+    haddr_t at = file->end_allocated;
+    if (type != H5FD_MEM_DRAW && size <= page && at / page != (at + size - 1) / page)
+        at = (at / page + 1) * page;
+    file->end_allocated = at + size;
+    return at;
 }
 
 static haddr_t driver_get_eoa(const H5FD_t *base, H5FD_mem_t type)
@@ -160,10 +216,8 @@ static herr_t driver_write(H5FD_t *base, H5FD_mem_t type, hid_t transfer, haddr_
     commit_file *file = handle->owner;
     if (address + size > handle->end_written)
         handle->end_written = address + size;
-    if (file->discard)
-        return 0;
-    if (file->error)
-        return -1;
+    if (file->discard || file->error)
+        return 0; /* the first failure has been told; libhdf5 would never stop trying to write the rest */
     off_t at = (off_t)address;
     size_t old = at < file->committed ? (size_t)(file->committed - at) : 0;
     if (type == H5FD_MEM_DRAW)
@@ -188,7 +242,7 @@ static herr_t driver_truncate(H5FD_t *base, hid_t transfer, hbool_t closing)
         }
     }
     handle->end_written = handle->end_allocated;
-    return file->error && !file->discard ? -1 : 0;
+    return 0;
 }
 
 static herr_t driver_flush(H5FD_t *base, hid_t transfer, hbool_t closing)
@@ -196,10 +250,10 @@ static herr_t driver_flush(H5FD_t *base, hid_t transfer, hbool_t closing)
     (void)transfer, (void)closing;
     driver_file *handle = (driver_file *)base;
     commit_file *file = handle->owner;
-    if (file->discard)
+    if (file->discard || file->error)
         return 0;
-    if (file->error)
-        return -1;
+    if (!file->overlapping && file->count > 1)
+        qsort(file->waiting, (size_t)file->count, sizeof *file->waiting, compare);
     if (file->to_disk && fsync(file->descriptor) != 0)
         file->error = errno;
     for (int k = 0; k < file->count && !file->error; k++)
@@ -230,6 +284,7 @@ static hid_t access_list(commit_file *file)
         .open = driver_open,
         .close = driver_close,
         .query = driver_query,
+        .alloc = driver_alloc,
         .get_eoa = driver_get_eoa,
         .set_eoa = driver_set_eoa,
         .get_eof = driver_get_eof,
@@ -327,7 +382,7 @@ hid_t commit_file_id(const commit_file *file)
 status commit_file_flush(commit_file *file, bool to_disk, failure *why)
 {
     file->to_disk = to_disk;
-    if (H5Fflush(file->file, H5F_SCOPE_GLOBAL) < 0)
+    if (H5Fflush(file->file, H5F_SCOPE_GLOBAL) < 0 || file->error)
         return commit_file_failed(file, "written", why);
     return STATUS_OK;
 }

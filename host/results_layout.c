@@ -103,14 +103,33 @@ static bool box(hid_t file, const results_spec *spec)
 
 static bool clock_create(clock_series *clock, hid_t file)
 {
-    return series_create(&clock->step, file, NULL, H5T_STD_I64LE, H5T_NATIVE_INT64, 1, NULL, 1024, NULL) &&
-           series_create(&clock->time, file, NULL, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1, NULL, 1024, "s");
+    return series_create(&clock->time, file, NULL, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1, NULL, 1024, "s") &&
+           series_create(&clock->step, file, NULL, H5T_STD_I64LE, H5T_NATIVE_INT64, 1, NULL, 1024, NULL);
 }
 
-static bool clock_link(const clock_series *clock, hid_t parent)
+static bool clock_link(const clock_series *clock, hid_t file, const char *element)
 {
-    return H5Olink(clock->step.dataset, parent, "step", H5P_DEFAULT, H5P_DEFAULT) >= 0 &&
-           H5Olink(clock->time.dataset, parent, "time", H5P_DEFAULT, H5P_DEFAULT) >= 0;
+    char step[512], time[512];
+    snprintf(step, sizeof step, "%s/step", element);
+    snprintf(time, sizeof time, "%s/time", element);
+    return H5Olink(clock->step.dataset, file, step, H5P_DEFAULT, H5P_DEFAULT) >= 0 &&
+           H5Olink(clock->time.dataset, file, time, H5P_DEFAULT, H5P_DEFAULT) >= 0;
+}
+
+/* The clocks are created last and so committed last (commit_file.c): a step that is in the file has its row in every dataset. */
+static bool clocks_create(results *r, hid_t file)
+{
+    bool done = clock_create(&r->frames, file) && clock_create(&r->samples, file);
+    char element[512];
+    for (int k = 0; k < r->field_count && done; k++) {
+        snprintf(element, sizeof element, "/particles/all/%s", r->field[k].name);
+        done = r->field[k].constant || clock_link(&r->frames, file, element);
+    }
+    for (int k = 0; k < r->observable_count && done; k++) {
+        snprintf(element, sizeof element, "/observables/%s", r->observable[k].name);
+        done = clock_link(&r->samples, file, element);
+    }
+    return done && (!r->contacts || clock_link(&r->frames, file, "/contacts"));
 }
 
 static void field_shape(const results *r, int k, int *rank, hsize_t row[2])
@@ -150,8 +169,7 @@ static bool fields_create(results *r, hid_t file)
         hsize_t row[2];
         field_shape(r, k, &rank, row);
         hid_t element = group(all, field->name);
-        done = clock_link(&r->frames, element) &&
-               series_create(&r->field_series[k], element, "value", field->integer ? H5T_STD_I32LE : H5T_IEEE_F64LE,
+        done = series_create(&r->field_series[k], element, "value", field->integer ? H5T_STD_I32LE : H5T_IEEE_F64LE,
                              field->integer ? H5T_NATIVE_INT32 : H5T_NATIVE_DOUBLE, rank, row, 0, field->unit);
         H5Gclose(element);
     }
@@ -168,8 +186,7 @@ static bool observables_create(results *r, hid_t file)
         snprintf(path, sizeof path, "/observables/%s", observable->name);
         hid_t element = group_at(file, path);
         hsize_t components = (hsize_t)observable->components;
-        done = clock_link(&r->samples, element) &&
-               series_create(&r->observable_series[k], element, "value", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, components > 1 ? 2 : 1,
+        done = series_create(&r->observable_series[k], element, "value", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, components > 1 ? 2 : 1,
                              &components, RESULTS_PENDING_MAX, observable->unit);
         H5Gclose(element);
     }
@@ -202,8 +219,7 @@ static bool contacts_create(results *r, hid_t file)
     hid_t parent = group_at(file, "/contacts");
     int64_t chunk = 3 * r->count < 256 ? 256 : 3 * r->count > 131072 ? 131072 : 3 * r->count; /* some three contacts a particle */
     const hsize_t three = 3;
-    bool done = clock_link(&r->frames, parent) &&
-                series_create(&r->contact.offset, parent, "offset", H5T_STD_I64LE, H5T_NATIVE_INT64, 1, NULL, 1024, NULL);
+    bool done = series_create(&r->contact.offset, parent, "offset", H5T_STD_I64LE, H5T_NATIVE_INT64, 1, NULL, 1024, NULL);
     for (int k = 0; k < CONTACT_COLUMNS && done; k++) {
         const contact_column *c = &contact_columns[k];
         done = series_create(column_series(r, c), parent, c->name, c->integer ? H5T_STD_I32LE : H5T_IEEE_F64LE,
@@ -231,10 +247,9 @@ bool results_layout_create(results *r, const results_spec *spec)
     hid_t file = commit_file_id(r->file);
     bool done = header(file) && box(file, spec);
     hid_t observables = group_at(file, "/observables");
-    done = done && clock_create(&r->frames, file) && clock_create(&r->samples, file);
     H5Gclose(observables);
     return done && fields_create(r, file) && observables_create(r, file) && (!r->contacts || contacts_create(r, file)) &&
-           texts_create(file, spec);
+           texts_create(file, spec) && clocks_create(r, file);
 }
 
 /* From the first element that carries it; a new one where no element does. */

@@ -42,7 +42,8 @@ typedef struct writer {
     int64_t count, frames;
 } writer;
 
-/* One frame of one field: a constant as it stands, a series as a hyperslab (start, stride and count, then the whole dataset). */
+/* One frame of one field: a constant as it stands, a series as a hyperslab (start, stride and count, then the whole dataset). This is
+ * XDMF 2; ParaView's Xdmf3 readers lose hyperslabs, and what they take instead the XDMF reader and VisIt do not. */
 static void put_data(const writer *w, const results_field *field, int64_t frame)
 {
     char shape[64], type[64];
@@ -111,19 +112,18 @@ status xdmf_write(const char *path, const char *results_path, int64_t count, int
         return fail(why, STATUS_ERROR, "%s: cannot be written: %s", temporary, strerror(errno));
     const char *slash = strrchr(results_path, '/');
     writer w = {out, slash ? slash + 1 : results_path, count, frames};
-    fputs("<?xml version=\"1.0\"?>\n<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
+    fputs("<?xml version=\"1.0\"?>\n<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
           "  <Grid Name=\"bed\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", out);
-    for (int64_t k = 0; k < frames; k++)
+    errno = 0;
+    for (int64_t k = 0; k < frames && !ferror(out); k++)
         put_frame(&w, field_count, field, position, k, time[k]);
     fputs("  </Grid>\n</Domain>\n</Xdmf>\n", out);
-    errno = 0;
-    bool failed = fflush(out) != 0 || ferror(out);
+    bool failed = ferror(out) || fflush(out) != 0;
     int reason = errno;
     failed = fclose(out) != 0 || failed;
-    if (failed || rename(temporary, path) != 0) {
-        reason = reason ? reason : errno;
-        unlink(temporary);
-        return fail(why, STATUS_ERROR, "%s: cannot be written: %s", path, reason ? strerror(reason) : "write failed");
-    }
-    return STATUS_OK;
+    if (!failed && rename(temporary, path) == 0)
+        return STATUS_OK;
+    reason = failed ? reason : errno;
+    unlink(temporary);
+    return fail(why, STATUS_ERROR, "%s: cannot be written: %s", path, reason ? strerror(reason) : "write failed");
 }
