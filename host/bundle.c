@@ -176,7 +176,7 @@ static bool write_entry(hid_t file, const bundle_entry *entry)
     H5Pset_obj_track_times(creation, false);
     H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
     hid_t dataset = H5Dcreate2(file, entry->name, stored_type(entry->type), space, H5P_DEFAULT, creation, H5P_DEFAULT);
-    bool done = dataset >= 0 && (!empty || entry->rows >= 0) && write_int_attribute(dataset, "type", (int)entry->type) &&
+    bool done = dataset >= 0 && write_int_attribute(dataset, "type", (int)entry->type) &&
                 (empty || H5Dwrite(dataset, memory_type(entry->type), H5S_ALL, H5S_ALL, H5P_DEFAULT, entry->data) >= 0);
     if (dataset >= 0)
         H5Dclose(dataset);
@@ -205,6 +205,7 @@ status bundle_write(const bundle *b, const char *path, failure *why)
     if ((size_t)snprintf(temporary, sizeof temporary, "%s.tmp", path) >= sizeof temporary)
         return fail(why, STATUS_BAD_INPUT, "%s: the path is too long", path);
     commit_file *file;
+    unlink(temporary); /* what an interrupted write left */
     if (commit_file_create(temporary, &file, why) != STATUS_OK)
         return STATUS_ERROR; /* in the middle of a run nothing that the user gave is at fault */
     bool done = write_int_attribute(commit_file_id(file), format_name, BUNDLE_FORMAT);
