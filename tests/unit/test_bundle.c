@@ -11,6 +11,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -227,13 +228,10 @@ static void test_truncated_at_every_length(void **state)
     }
 }
 
-/* One damaged byte anywhere: an error or, in the values themselves, another value; never a crash. */
-static void test_damaged_bytes(void **state)
+static int count_errors(const unsigned char *whole, size_t size)
 {
-    (void)state;
     static unsigned char bytes[1 << 20];
-    write_example(in_folder("a.h5"));
-    size_t size = load(in_folder("a.h5"), bytes, sizeof bytes);
+    memcpy(bytes, whole, size);
     int errors = 0;
     for (size_t at = 0; at < size; at += 3) {
         failure why;
@@ -245,7 +243,24 @@ static void test_damaged_bytes(void **state)
             errors++;
         bundle_free(&b);
     }
-    assert_true(errors > 100);
+    return errors;
+}
+
+/* One damaged byte anywhere: an error or, in the values themselves, another value; never a crash. In a process of its own, because
+ * libhdf5 itself leaks memory on damaged files, which a leak checker would hold against us. */
+static void test_damaged_bytes(void **state)
+{
+    (void)state;
+    static unsigned char bytes[1 << 20];
+    write_example(in_folder("a.h5"));
+    size_t size = load(in_folder("a.h5"), bytes, sizeof bytes);
+    pid_t child = fork();
+    if (child == 0)
+        _exit(count_errors(bytes, size) > 100 ? 0 : 1);
+    int how;
+    assert_int_equal(waitpid(child, &how, 0), child);
+    assert_true(WIFEXITED(how));
+    assert_int_equal(WEXITSTATUS(how), 0);
 }
 
 static void limit_file_size(rlim_t size)
