@@ -71,11 +71,11 @@ static bool two_frictions(const scene *scene)
     return false;
 }
 
-void live_laws_of(const scene *scene, const bed *bed, int stage, live_laws *out)
+void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
 {
     memset(out, 0, sizeof *out);
     for (slot_id slot = 0; slot < SLOT_COUNT; slot++) {
-        const effect *e = slot_is_listed(slot) ? scene_effect(scene, stage, slot) : NULL;
+        const effect *e = slot_is_listed(slot) ? scene_effect(scene, -1, slot) : NULL;
         if (!e)
             continue;
         out->law[slot] = e->law;
@@ -98,6 +98,16 @@ void live_laws_of(const scene *scene, const bed *bed, int stage, live_laws *out)
     if (wants_output(scene, "orientation"))
         out->law[SLOT_ORIENTATION] = &law_orientation_quaternion;
     out->law[SLOT_INTEGRATOR] = &law_semi_implicit_euler;
+}
+
+void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, live_laws *out)
+{
+    *out = *all;
+    for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
+        if (slot_is_listed(slot) && !scene_effect(scene, stage, slot))
+            out->law[slot] = NULL;
+    if (!out->law[SLOT_TANGENTIAL])
+        out->law[SLOT_SLIP] = NULL;
 }
 
 /* The file that fills a slot when no law does. */

@@ -10,8 +10,10 @@ typedef struct live_laws {
     const double *option[SLOT_COUNT];
 } live_laws;
 
-/* stage -1: the union over all stages, which decides what is allocated. */
-void live_laws_of(const scene *scene, const bed *bed, int stage, live_laws *out);
+/* The union over all stages, which decides what is allocated. */
+void live_laws_of(const scene *scene, const bed *bed, live_laws *out);
+/* The laws of one stage, from the union: what the stage switches off is gone. */
+void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, live_laws *out);
 /* Files of the program in order; returns their number (at most `max`). */
 int live_files(const live_laws *live, const char **files, int max);
 /* "#define" lines: options, places of the constants in a row, number of constants a class. */

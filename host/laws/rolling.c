@@ -18,6 +18,8 @@ static void derive_elastic_plastic(const contact_class *class, const double *opt
 {
     (void)option;
     double shear = effective_shear_modulus(class, 0);
+    if (interaction_value(class, &property_rolling_friction) == 0.0)
+        shear = 0.0; /* a spring that never bears anything must not limit the step */
     parameter[0] = 8.0 * shear;
     parameter[1] = 2.0 * rolling_damping_ratio(class) * sqrt(8.0 * shear);
     parameter[2] = interaction_value(class, &property_rolling_friction);

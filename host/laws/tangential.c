@@ -50,6 +50,8 @@ double rolling_damping_ratio(const contact_class *class)
 static void derive_mindlin(const contact_class *class, const double *option, double *parameter)
 {
     double shear = effective_shear_modulus(class, option[MINDLIN_SHEAR_MODULUS] == 1.0);
+    if (interaction_value(class, &property_friction_static) == 0.0)
+        shear = 0.0; /* a spring that never bears anything must not limit the step */
     parameter[0] = 8.0 * shear;
     parameter[1] = 2.0 * tangential_damping_ratio(class) * sqrt(8.0 * shear);
 }
@@ -89,6 +91,8 @@ static void derive_coulomb_linear(const contact_class *class, const double *opti
 {
     (void)option;
     double stiffness = interaction_value(class, &property_tangential_stiffness);
+    if (interaction_value(class, &property_friction_static) == 0.0)
+        stiffness = 0.0;
     parameter[0] = stiffness;
     parameter[1] = 2.0 * tangential_damping_ratio(class) * sqrt(stiffness);
 }

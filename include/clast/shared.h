@@ -24,15 +24,17 @@ typedef struct clast_launch {
     clast_f64 travel2;       /* square of the displacement that asks for a new table, m2 */
     clast_f64 low[3];        /* domain, m */
     clast_f64 high[3];
-    clast_f64 length[3];     /* periodic lengths; huge where not periodic */
+    clast_f64 length[3];     /* periodic lengths; 0 where not periodic */
     clast_i64 particle_stride; /* elements between the components of a particle field */
     clast_i64 record_stride;   /* elements between the components of a record field */
     clast_i32 particle_count;
     clast_i32 first_wall_group; /* work-groups of the pair stage from here on hold wall records */
     clast_i32 step;             /* counts from the start of the batch */
-    clast_i32 pose_row;         /* row of the wall and mover tables for this step */
+    clast_i32 face_row;         /* row of the wall and mover tables for this step */
+    clast_i32 mover_row;
     clast_i32 face_count;
     clast_i32 mover_count;
+    clast_i32 spare;
 } clast_launch;
 
 /* Written by stages that find something; the host reads it once a batch. */

@@ -1,7 +1,7 @@
 /* motion: grains of some groups are held or moved as prescribed. Such a grain counts as infinitely heavy. */
 #define MOTION_PAIR_FIELDS(READ, WRITE) READ(int, mover)
 #define MOTION_PARTICLE_FIELDS(READ, WRITE) READ(int, mover) READ(clast_mover, movers)
-#define MOTION_ROW(launch) (movers + (launch)->pose_row * (launch)->mover_count)
+#define MOTION_ROW(launch) (movers + (launch)->mover_row * (launch)->mover_count)
 #define MOTION_GRAIN(i) mover[i]
 
 INLINE real motion_mass(int mover, real mass)

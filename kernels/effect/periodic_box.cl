@@ -1,4 +1,5 @@
-/* periodic: nearest image, and positions kept inside the box. Lengths of directions that are not periodic are huge. */
+/* periodic: nearest image, and positions kept inside the box. The length of a direction that is not periodic is 0, which
+ * changes nothing. */
 INLINE real periodic_nearest1(real d, real length)
 {
     d = d > R(0.5) * length ? d - length : d;

@@ -1,7 +1,7 @@
 /* What all wall shapes share. A wall contact is the contact of a grain with a body that is infinitely large, heavy and stiff (TM Remark 1). */
 #define WALLS_PAIR_FIELDS(READ, WRITE) READ(clast_face, faces)
 #define WALLS_CONTACT(launch, face, x, v, c, touch) \
-    walls_contact(faces + (launch)->pose_row * (launch)->face_count, (launch)->face_count, face, x, v, c, touch)
+    walls_contact(faces + (launch)->face_row * (launch)->face_count, (launch)->face_count, face, x, v, c, touch)
 
 typedef struct wall_touch {
     vec3 point;    /* of the wall, nearest to the grain's centre */

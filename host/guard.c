@@ -1,0 +1,109 @@
+/* Looks for what must not go on: numbers lost, overlaps and moves too large, grains outside, a step past its limit for long. */
+#include "simulation.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define CHUNK 256
+#define FINDINGS 4
+
+static status id_at(simulation *sim, double index, int32_t *id, failure *why)
+{
+    return store_read(sim, store_find(sim, "id")->mem, 4 * (uint64_t)index, sizeof *id, id, why);
+}
+
+static void stop(simulation *sim, guard_finding *out, int32_t id, const char *what, const char *remedy)
+{
+    out->stop = true;
+    snprintf(out->text, sizeof out->text, "%s: stopped by a guard at t = %.9g s (step %lld), grain %d: %s; %s", sim->scene->path, sim->time,
+             (long long)sim->step, id, what, remedy);
+}
+
+static status check_grains(simulation *sim, guard_finding *out, failure *why)
+{
+    int64_t chunks = (sim->count + CHUNK - 1) / CHUNK;
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "guard_particles");
+    bool bounded = sim->scene->domain.given;
+    double bad = -1, left = -1, fastest = -1, speed2 = 0.0;
+    char what[256];
+    TRY(observe_partial(sim, chunks * FINDINGS, why));
+    TRY(launch_set(kernel, "guard_particles", why, "Lmmmi", &launch, store_find(sim, "position")->mem, store_find(sim, "velocity")->mem, sim->partial,
+                   (cl_int)bounded));
+    TRY(launch_run(sim, kernel, "guard_particles", chunks, 1, why));
+    double *found = malloc(sizeof *found * (size_t)(chunks * FINDINGS + 1));
+    if (!found)
+        return fail(why, STATUS_ERROR, "out of memory");
+    status result = store_read(sim, sim->partial, 0, 8 * (uint64_t)(chunks * FINDINGS), found, why);
+    for (int64_t c = 0; c < chunks && result == STATUS_OK; c++) {
+        const double *f = found + c * FINDINGS;
+        bad = bad < 0.0 ? f[0] : bad;
+        left = left < 0.0 ? f[2] : left;
+        if (f[3] > speed2) {
+            speed2 = f[3];
+            fastest = f[1];
+        }
+    }
+    free(found);
+    TRY(result);
+    int32_t id;
+    if (bad >= 0.0) {
+        TRY(id_at(sim, bad, &id, why));
+        stop(sim, out, id, "position or velocity is not a number", "try a smaller step, and look at the last frames before");
+    } else if (left >= 0.0 && sim->scene->domain.delete_leaving) {
+        TRY(simulation_pose_now(sim, why));
+        TRY(table_build(sim, true, why));
+    } else if (left >= 0.0) {
+        TRY(id_at(sim, left, &id, why));
+        stop(sim, out, id, "it has left the domain", "enlarge the domain, close the walls, or let leavers be deleted (domain: {leaving: delete})");
+    } else if (sqrt(speed2) * sim->dt > sim->scene->guards.move_max * fmax(sim->table.skin, 0.1 * sim->mean_radius) && sim->count > 1) {
+        TRY(id_at(sim, fastest, &id, why));
+        snprintf(what, sizeof what, "it moves %.3g m in a step, more than move_max %g times the skin of %.3g m", sqrt(speed2) * sim->dt,
+                 sim->scene->guards.move_max, sim->table.skin);
+        stop(sim, out, id, what, "try a smaller step or a larger contact_table.skin_m");
+    }
+    return STATUS_OK;
+}
+
+static status check_overlaps(simulation *sim, guard_finding *out, failure *why)
+{
+    contact_table *t = &sim->table;
+    int64_t chunks = (t->pair_count + CHUNK - 1) / CHUNK;
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "guard_records");
+    double most = 0.0, where = -1.0;
+    if (chunks == 0 || !sim->live.law[SLOT_NORMAL])
+        return STATUS_OK;
+    TRY(observe_partial(sim, 2 * chunks, why));
+    TRY(launch_set(kernel, "guard_records", why, "Lmmmmmi", &launch, t->owner[t->now], t->other[t->now], store_find(sim, "position")->mem,
+                   store_find(sim, "radius")->mem, sim->partial, (cl_int)t->pair_count));
+    TRY(launch_run(sim, kernel, "guard_records", chunks, 1, why));
+    double *found = malloc(sizeof *found * (size_t)(2 * chunks + 1));
+    if (!found)
+        return fail(why, STATUS_ERROR, "out of memory");
+    status result = store_read(sim, sim->partial, 0, 16 * (uint64_t)chunks, found, why);
+    for (int64_t c = 0; c < chunks && result == STATUS_OK; c++)
+        if (found[2 * c] > most) {
+            most = found[2 * c];
+            where = found[2 * c + 1];
+        }
+    free(found);
+    TRY(result);
+    if (most > sim->scene->guards.overlap_max) {
+        int32_t owner, id;
+        char what[256];
+        TRY(store_read(sim, t->owner[t->now], 4 * (uint64_t)where, sizeof owner, &owner, why));
+        TRY(id_at(sim, owner, &id, why));
+        snprintf(what, sizeof what, "overlap of %.3g of its radius, overlap_max is %g", most, sim->scene->guards.overlap_max);
+        stop(sim, out, id, what, "try a smaller step, a stiffer material, or grains that do not overlap at the start");
+    }
+    return STATUS_OK;
+}
+
+status guard_check(simulation *sim, guard_finding *out, failure *why)
+{
+    out->stop = false;
+    TRY(check_grains(sim, out, why));
+    return out->stop ? STATUS_OK : check_overlaps(sim, out, why);
+}

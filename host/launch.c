@@ -1,0 +1,208 @@
+/* Kernels of the stage's program, and their arguments: those of the core by name, then what each live law adds, in the order of the slots. */
+#include "laws/fields.h"
+#include "program.h"
+#include "simulation.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The field lists of kernels/stage: core names, then the slots whose fields follow. */
+typedef enum list_part { LIST_PAIR, LIST_PARTICLE, LIST_SPIN, LIST_TORQUE } list_part;
+
+typedef struct stage_list {
+    const char *kernel;
+    const char *core[10];
+    list_part part;
+} stage_list;
+
+static const stage_list stage_lists[] = {
+    {"pair_stage", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
+    {"pair_probe", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
+    {"observe_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
+    {"limit_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
+    {"particle_stage", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+};
+
+/* The order in which PAIR_FIELDS and PARTICLE_FIELDS name the slots. */
+static const slot_id pair_slots[] = {SLOT_COMPOSITION, SLOT_MOTION, SLOT_ROTATION, SLOT_SLIP, SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_WALLS};
+static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENTATION};
+
+int launch_argument_names(const live_laws *live, const char *kernel, const char **names, int max)
+{
+    int count = 0;
+    for (size_t l = 0; l < sizeof stage_lists / sizeof *stage_lists; l++) {
+        const stage_list *list = &stage_lists[l];
+        if (strcmp(list->kernel, kernel) != 0)
+            continue;
+        for (int n = 0; list->core[n] && count < max; n++)
+            names[count++] = list->core[n];
+        bool pair = list->part == LIST_PAIR;
+        size_t slots = pair ? sizeof pair_slots / sizeof *pair_slots : sizeof particle_slots / sizeof *particle_slots;
+        for (size_t s = 0; s < slots; s++) {
+            const law *l1 = live->law[pair ? pair_slots[s] : particle_slots[s]];
+            const field *const *fields = !l1 ? NULL : pair ? l1->pair_fields : l1->particle_fields;
+            for (int f = 0; fields && f < LAW_ARGUMENTS_MAX && fields[f] && count < max; f++)
+                names[count++] = fields[f]->name;
+        }
+    }
+    return count;
+}
+
+static cl_mem named_buffer(simulation *sim, const char *name)
+{
+    contact_table *t = &sim->table;
+    const struct {
+        const char *name;
+        cl_mem mem;
+    } own[] = {{"owner", t->owner[t->now]},
+               {"other", t->other[t->now]},
+               {"slots", t->slots[t->now]},
+               {"slot_offset", t->slot_offset[t->now]},
+               {"contact_constants", sim->constants},
+               {"built_position", sim->built_position},
+               {"faces", sim->faces},
+               {"movers", sim->movers}};
+    for (size_t n = 0; n < sizeof own / sizeof *own; n++)
+        if (strcmp(own[n].name, name) == 0)
+            return own[n].mem;
+    stored_field *stored = store_find(sim, name);
+    return stored ? stored->mem : NULL;
+}
+
+status launch_bind(simulation *sim, const char *kernel, int first, failure *why)
+{
+    const char *names[64];
+    int count = launch_argument_names(&sim->live, kernel, names, 64);
+    cl_kernel k = launch_kernel(sim, kernel);
+    for (int a = 0; a < count; a++) {
+        cl_mem mem = named_buffer(sim, names[a]);
+        if (!mem)
+            return fail(why, STATUS_ERROR, "internal: no array named %s for %s", names[a], kernel);
+        TRY_CL(clSetKernelArg(k, (cl_uint)(first + a), sizeof mem, &mem), kernel);
+    }
+    return STATUS_OK;
+}
+
+/* After a table has been built its buffers may be others. */
+status launch_bind_stages(simulation *sim, failure *why)
+{
+    cl_kernel pair = launch_kernel(sim, "pair_stage"), particle = launch_kernel(sim, "particle_stage");
+    TRY(launch_bind(sim, "pair_stage", 2, why));
+    TRY(launch_bind(sim, "particle_stage", 2, why));
+    TRY_CL(clSetKernelArg(pair, 1, sizeof sim->control, &sim->control), "pair_stage");
+    TRY_CL(clSetKernelArg(particle, 1, sizeof sim->control, &sim->control), "particle_stage");
+    const char *const others[] = {"pair_probe", "observe_records", "limit_records"};
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+        TRY(launch_bind(sim, others[k], 1, why));
+    return STATUS_OK;
+}
+
+status launch_open(simulation *sim, failure *why)
+{
+    const char *files[64];
+    char constants[8192], *text = NULL;
+    live_constants(&sim->live, sim->scene, constants, sizeof constants);
+    int count = live_files(&sim->live, files, 64);
+    TRY(program_assemble(constants, files, count, sim->kernels_directory, &text, why));
+    status result = program_build(sim->device, text, &sim->program, why);
+    free(text);
+    TRY(result);
+    static const char *const names[] = {"pair_stage",       "pair_probe",      "particle_stage",    "scan_chunks",       "scan_sums",
+                                        "scan_write",       "table_bin",       "table_order",       "table_order_cells", "table_permute_real",
+                                        "table_permute_int", "table_count",    "table_fill",        "table_pad",         "table_widths",
+                                        "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",
+                                        "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
+                                        "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls"};
+    sim->kernel_count = 0;
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        bool walls = strstr(names[n], "_walls") != NULL;
+        if (walls && !sim->live.law[SLOT_WALLS])
+            continue;
+        cl_int code;
+        cl_kernel kernel = clCreateKernel(sim->program, names[n], &code);
+        if (code != CL_SUCCESS)
+            return fail(why, STATUS_DEVICE, "the device failed: kernel %s (%s)", names[n], device_error_name(code));
+        sim->kernel[sim->kernel_count++] = (kernel_slot){names[n], kernel};
+    }
+    return STATUS_OK;
+}
+
+void launch_close(simulation *sim)
+{
+    for (int k = 0; k < sim->kernel_count; k++)
+        clReleaseKernel(sim->kernel[k].kernel);
+    sim->kernel_count = 0;
+    if (sim->program)
+        clReleaseProgram(sim->program);
+    sim->program = NULL;
+}
+
+cl_kernel launch_kernel(simulation *sim, const char *name)
+{
+    for (int k = 0; k < sim->kernel_count; k++)
+        if (strcmp(sim->kernel[k].name, name) == 0)
+            return sim->kernel[k].kernel;
+    return NULL;
+}
+
+clast_launch launch_values(const simulation *sim)
+{
+    const domain *d = &sim->scene->domain;
+    double travel = 0.5 * sim->table.skin;
+    clast_launch v = {
+        .dt = sim->dt,
+        .travel2 = travel * travel,
+        .particle_stride = sim->stride,
+        .record_stride = sim->table.record_stride,
+        .particle_count = (clast_i32)sim->count,
+        .first_wall_group = sim->table.wall_base / CLAST_BLOCK,
+        .face_count = sim->face_count,
+        .mover_count = sim->mover_count,
+    };
+    for (int c = 0; c < 3; c++) {
+        bool periodic = d->given && d->periodic[c];
+        v.gravity[c] = sim->gravity[c];
+        v.low[c] = d->given ? d->low_m[c] : -1e30;
+        v.high[c] = d->given ? d->high_m[c] : 1e30;
+        v.length[c] = periodic ? d->high_m[c] - d->low_m[c] : 0.0;
+    }
+    return v;
+}
+
+status launch_run(simulation *sim, cl_kernel kernel, const char *name, int64_t items, int64_t group, failure *why)
+{
+    if (items <= 0)
+        return STATUS_OK;
+    size_t local = (size_t)group, global = ((size_t)items + local - 1) / local * local;
+    TRY_CL(clEnqueueNDRangeKernel(sim->device->queue, kernel, 1, NULL, &global, &local, 0, NULL, NULL), name);
+    return STATUS_OK;
+}
+
+status launch_set(cl_kernel kernel, const char *name, failure *why, const char *types, ...)
+{
+    va_list values;
+    cl_int code = CL_SUCCESS;
+    va_start(values, types);
+    for (cl_uint a = 0; types[a] && code == CL_SUCCESS; a++) {
+        if (types[a] == 'm') {
+            cl_mem mem = va_arg(values, cl_mem);
+            code = clSetKernelArg(kernel, a, sizeof mem, &mem);
+        } else if (types[a] == 'i') {
+            cl_int number = va_arg(values, cl_int);
+            code = clSetKernelArg(kernel, a, sizeof number, &number);
+        } else if (types[a] == 'l') {
+            clast_i64 number = va_arg(values, clast_i64);
+            code = clSetKernelArg(kernel, a, sizeof number, &number);
+        } else if (types[a] == 'd') {
+            double number = va_arg(values, double);
+            code = clSetKernelArg(kernel, a, sizeof number, &number);
+        } else {
+            const clast_launch *launch = va_arg(values, const clast_launch *);
+            code = clSetKernelArg(kernel, a, sizeof *launch, launch);
+        }
+    }
+    va_end(values);
+    TRY_CL(code, name);
+    return STATUS_OK;
+}

@@ -1,0 +1,281 @@
+/* Sums, contacts and fields, read from the device when they are due. */
+#include "simulation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CHUNK 256
+#define PARTICLE_SUMS 12
+
+status observe_partial(simulation *sim, int64_t doubles, failure *why)
+{
+    if (doubles <= sim->partial_capacity)
+        return STATUS_OK;
+    store_release(sim, &sim->partial, 8 * (uint64_t)sim->partial_capacity);
+    sim->partial_capacity = doubles;
+    return store_buffer(sim, &sim->partial, 8 * (uint64_t)doubles, "sums", why);
+}
+
+status observe_where(simulation *sim, failure *why)
+{
+    if (!sim->particles_stale)
+        return STATUS_OK;
+    const cl_int none = -1;
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "table_where");
+    TRY_CL(clEnqueueFillBuffer(sim->device->queue, sim->where, &none, sizeof none, 0, 4 * (size_t)sim->id_count, 0, NULL, NULL), "indices of ids");
+    TRY(launch_set(kernel, "table_where", why, "Lmm", &launch, store_find(sim, "id")->mem, sim->where));
+    TRY(launch_run(sim, kernel, "table_where", sim->count, CLAST_BLOCK, why));
+    sim->particles_stale = false;
+    return STATUS_OK;
+}
+
+static status read_partial(simulation *sim, int64_t doubles, double **out, failure *why)
+{
+    *out = malloc(sizeof **out * (size_t)(doubles + 1));
+    if (!*out)
+        return fail(why, STATUS_ERROR, "out of memory");
+    return store_read(sim, sim->partial, 0, 8 * (uint64_t)doubles, *out, why);
+}
+
+status observe_particle_sums(simulation *sim, particle_sums *out, failure *why)
+{
+    int64_t chunks = (sim->id_count + CHUNK - 1) / CHUNK;
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "observe_particles");
+    stored_field *spin = sim->live.law[SLOT_ROTATION] ? store_find(sim, "spin") : NULL;
+    double *partial = NULL, sum[PARTICLE_SUMS] = {0};
+    memset(out, 0, sizeof *out);
+    TRY(observe_where(sim, why));
+    TRY(observe_partial(sim, chunks * PARTICLE_SUMS, why));
+    TRY(launch_set(kernel, "observe_particles", why, spin ? "Lmmmmmmim" : "Lmmmmmmi", &launch, sim->where, store_find(sim, "position")->mem,
+                   store_find(sim, "velocity")->mem, store_find(sim, "radius")->mem, store_find(sim, "mass")->mem, sim->partial, (cl_int)sim->id_count,
+                   spin ? spin->mem : NULL));
+    TRY(launch_run(sim, kernel, "observe_particles", chunks, 1, why));
+    status result = read_partial(sim, chunks * PARTICLE_SUMS, &partial, why);
+    for (int64_t c = 0; c < chunks && result == STATUS_OK; c++)
+        for (int q = 0; q < PARTICLE_SUMS; q++)
+            sum[q] = q == 10 ? fmax(sum[q], partial[c * PARTICLE_SUMS + q]) : sum[q] + partial[c * PARTICLE_SUMS + q];
+    free(partial);
+    TRY(result);
+    *out = (particle_sums){sum[0], sum[1], sum[2], sum[3], {sum[4], sum[5], sum[6]}, {sum[7], sum[8], sum[9]}, sqrt(sum[10]), sum[11]};
+    return STATUS_OK;
+}
+
+/* One component of a record array, on the host. */
+static status read_component(simulation *sim, cl_mem mem, int component, double **out, failure *why)
+{
+    int64_t records = sim->table.record_count;
+    *out = malloc(sizeof **out * (size_t)(records + 1));
+    if (!*out)
+        return fail(why, STATUS_ERROR, "out of memory");
+    return store_read(sim, mem, 8 * (uint64_t)(component * sim->table.record_stride), 8 * (uint64_t)records, *out, why);
+}
+
+static status run_on_records(simulation *sim, const char *name, failure *why)
+{
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, name);
+    TRY(simulation_pose_now(sim, why));
+    launch.dt = 0.0;
+    TRY_CL(clSetKernelArg(kernel, 0, sizeof launch, &launch), name);
+    return launch_run(sim, kernel, name, sim->table.record_count, CLAST_BLOCK, why);
+}
+
+status observe_contact_sums(simulation *sim, contact_sums *out, failure *why)
+{
+    double *ratio = NULL, *energy = NULL;
+    memset(out, 0, sizeof *out);
+    TRY(run_on_records(sim, "observe_records", why));
+    cl_mem force = store_find(sim, "force")->mem;
+    status result = read_component(sim, force, 0, &ratio, why);
+    if (result == STATUS_OK)
+        result = read_component(sim, force, 1, &energy, why);
+    for (int64_t k = 0; k < sim->table.record_count && result == STATUS_OK; k++)
+        if (ratio[k] > 0.0) {
+            out->overlap_max = fmax(out->overlap_max, ratio[k]);
+            out->elastic += energy[k];
+            out->contacts++;
+            out->pairs += k < sim->table.wall_base;
+        }
+    free(ratio);
+    free(energy);
+    return result;
+}
+
+typedef struct record_arrays {
+    int32_t *owner, *other, *id;
+    double *overlap, *radius, *force[3], *torque[3], *position[3];
+} record_arrays;
+
+static void free_records(record_arrays *r)
+{
+    free(r->owner);
+    free(r->other);
+    free(r->id);
+    free(r->overlap);
+    free(r->radius);
+    for (int c = 0; c < 3; c++) {
+        free(r->force[c]);
+        free(r->torque[c]);
+        free(r->position[c]);
+    }
+}
+
+static status read_ints(simulation *sim, cl_mem mem, int64_t count, int32_t **out, failure *why)
+{
+    *out = malloc(sizeof **out * (size_t)(count + 1));
+    if (!*out)
+        return fail(why, STATUS_ERROR, "out of memory");
+    return store_read(sim, mem, 0, 4 * (uint64_t)count, *out, why);
+}
+
+static status read_doubles(simulation *sim, cl_mem mem, int64_t first, int64_t count, double **out, failure *why)
+{
+    *out = malloc(sizeof **out * (size_t)(count + 1));
+    if (!*out)
+        return fail(why, STATUS_ERROR, "out of memory");
+    return store_read(sim, mem, 8 * (uint64_t)first, 8 * (uint64_t)count, *out, why);
+}
+
+static status read_records(simulation *sim, record_arrays *r, failure *why)
+{
+    contact_table *t = &sim->table;
+    cl_mem force = store_find(sim, "force")->mem;
+    stored_field *torque = sim->live.law[SLOT_ROTATION] ? store_find(sim, "torque") : NULL;
+    memset(r, 0, sizeof *r);
+    TRY(run_on_records(sim, "observe_records", why));
+    TRY(read_component(sim, force, 2, &r->overlap, why));
+    TRY(run_on_records(sim, "pair_probe", why));
+    TRY(read_ints(sim, t->owner[t->now], t->record_count, &r->owner, why));
+    TRY(read_ints(sim, t->other[t->now], t->record_count, &r->other, why));
+    TRY(read_ints(sim, store_find(sim, "id")->mem, sim->stride, &r->id, why));
+    TRY(read_doubles(sim, store_find(sim, "radius")->mem, 0, sim->stride, &r->radius, why));
+    for (int c = 0; c < 3; c++) {
+        TRY(read_component(sim, force, c, &r->force[c], why));
+        TRY(read_doubles(sim, store_find(sim, "position")->mem, c * sim->stride, sim->stride, &r->position[c], why));
+        if (torque)
+            TRY(read_component(sim, torque->mem, 3 + c, &r->torque[c], why));
+    }
+    return STATUS_OK;
+}
+
+/* Without spin a wall's force is along the normal, through the grain's centre. */
+static void torque_without_spin(const simulation *sim, const record_arrays *r, int64_t k, const clast_face *face, double *torque)
+{
+    double arm[3];
+    int32_t i = r->owner[k];
+    (void)sim;
+    for (int c = 0; c < 3; c++)
+        arm[c] = r->position[c][i] - face->pivot[c];
+    for (int c = 0; c < 3; c++)
+        torque[c] = -(arm[(c + 1) % 3] * r->force[(c + 2) % 3][k] - arm[(c + 2) % 3] * r->force[(c + 1) % 3][k]);
+}
+
+static live_contact make_contact(const simulation *sim, const record_arrays *r, int64_t k)
+{
+    live_contact contact = {.i = r->id[r->owner[k]], .j = -1, .wall = -1, .overlap = r->overlap[k]};
+    bool wall = k >= sim->table.wall_base;
+    double ri = r->radius[r->owner[k]], sign = 1.0, effective = ri;
+    if (wall) {
+        const clast_face *face = &sim->face_rows[r->other[k]];
+        contact.wall = face->wall;
+        if (r->torque[0])
+            for (int c = 0; c < 3; c++)
+                contact.torque_wall[c] = r->torque[c][k];
+        else
+            torque_without_spin(sim, r, k, face, contact.torque_wall);
+    } else {
+        double rj = r->radius[r->other[k]];
+        effective = ri * rj / (ri + rj);
+        contact.j = r->id[r->other[k]];
+        if (contact.i > contact.j) {
+            int32_t swap = contact.i;
+            contact.i = contact.j;
+            contact.j = swap;
+            sign = -1.0;
+        }
+    }
+    contact.area = M_PI * effective * contact.overlap;
+    for (int c = 0; c < 3; c++)
+        contact.force[c] = sign * r->force[c][k];
+    return contact;
+}
+
+static int by_ids(const void *a, const void *b)
+{
+    const live_contact *p = a, *q = b;
+    if (p->i != q->i)
+        return p->i < q->i ? -1 : 1;
+    if ((p->j < 0) != (q->j < 0))
+        return p->j < 0 ? 1 : -1;
+    if (p->j != q->j)
+        return p->j < q->j ? -1 : 1;
+    return (p->wall > q->wall) - (p->wall < q->wall);
+}
+
+status observe_contacts(simulation *sim, bool walls_only, live_contact **out, int64_t *count, failure *why)
+{
+    record_arrays r;
+    *out = NULL;
+    *count = 0;
+    status result = read_records(sim, &r, why);
+    int64_t first = walls_only ? sim->table.wall_base : 0;
+    if (result == STATUS_OK && !(*out = malloc(sizeof **out * (size_t)(sim->table.record_count - first + 1))))
+        result = fail(why, STATUS_ERROR, "out of memory");
+    for (int64_t k = first; k < sim->table.record_count && result == STATUS_OK; k++)
+        if (r.overlap[k] > 0.0)
+            (*out)[(*count)++] = make_contact(sim, &r, k);
+    if (result == STATUS_OK)
+        qsort(*out, (size_t)*count, sizeof **out, by_ids);
+    free_records(&r);
+    return result;
+}
+
+status observe_virial(simulation *sim, double *stress, failure *why)
+{
+    record_arrays r;
+    const domain *d = &sim->scene->domain;
+    memset(stress, 0, 9 * sizeof *stress);
+    status result = read_records(sim, &r, why);
+    for (int64_t k = 0; k < sim->table.wall_base && result == STATUS_OK; k++) {
+        if (!(r.overlap[k] > 0.0))
+            continue;
+        double branch[3];
+        for (int c = 0; c < 3; c++) {
+            double length = d->given && d->periodic[c] ? d->high_m[c] - d->low_m[c] : 0.0;
+            branch[c] = r.position[c][r.owner[k]] - r.position[c][r.other[k]];
+            if (length > 0.0)
+                branch[c] -= length * rint(branch[c] / length);
+        }
+        for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++)
+                stress[3 * a + b] += r.force[a][k] * branch[b];
+    }
+    free_records(&r);
+    return result;
+}
+
+status observe_field(simulation *sim, const char *name, double **out, failure *why)
+{
+    stored_field *stored = store_find(sim, name);
+    if (!stored)
+        return fail(why, STATUS_ERROR, "internal: no field named %s", name);
+    int components = stored->field->components;
+    int32_t *id = NULL;
+    double *column = NULL;
+    *out = malloc(sizeof **out * (size_t)(sim->id_count * components + 1));
+    status result = *out ? read_ints(sim, store_find(sim, "id")->mem, sim->stride, &id, why) : fail(why, STATUS_ERROR, "out of memory");
+    for (int64_t n = 0; result == STATUS_OK && n < sim->id_count * components; n++)
+        (*out)[n] = NAN;
+    for (int c = 0; c < components && result == STATUS_OK; c++) {
+        result = read_doubles(sim, stored->mem, c * sim->stride, sim->stride, &column, why);
+        for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++)
+            (*out)[(int64_t)id[i] * components + c] = column[i];
+        free(column);
+        column = NULL;
+    }
+    free(id);
+    return result;
+}

@@ -1,0 +1,510 @@
+#include "simulation.h"
+
+#include "laws/fields.h"
+#include "property.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* ---- making one ---- */
+
+static void measure_bed(simulation *sim, const bed *bed)
+{
+    const scene *scene = sim->scene;
+    sim->radius_min = INFINITY;
+    for (int64_t i = 0; i < bed->count; i++) {
+        double r = bed->radius[i], density = scene_material(scene, bed->material[i], &property_density);
+        sim->radius_min = fmin(sim->radius_min, r);
+        sim->radius_max = fmax(sim->radius_max, r);
+        sim->mean_radius += r / (double)bed->count;
+        sim->mean_mass += 4.0 / 3.0 * M_PI * density * r * r * r / (double)bed->count;
+    }
+    for (int c = 0; c < 3; c++) {
+        bool periodic = scene->domain.given && scene->domain.periodic[c];
+        sim->bed_low[c] = periodic ? scene->domain.low_m[c] : bed->low[c];
+        sim->bed_high[c] = periodic ? scene->domain.high_m[c] : bed->high[c];
+    }
+}
+
+static status check_periods(const simulation *sim, failure *why)
+{
+    const domain *d = &sim->scene->domain;
+    double least = 2.0 * (2.0 * sim->radius_max + sim->table.skin);
+    for (int c = 0; d->given && c < 3; c++)
+        if (d->periodic[c] && d->high_m[c] - d->low_m[c] < least)
+            return fail(why, STATUS_BAD_INPUT,
+                        "%s: domain: the periodic length along %c is %g m; it must be at least %g m (two largest diameters and the skin, twice)",
+                        sim->scene->path, "xyz"[c], d->high_m[c] - d->low_m[c], least);
+    return STATUS_OK;
+}
+
+static status upload_vectors(simulation *sim, const char *name, const double (*value)[3], int64_t count, failure *why)
+{
+    double *column = calloc((size_t)sim->stride, sizeof *column);
+    status result = column ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
+    for (int c = 0; result == STATUS_OK && c < 3; c++) {
+        for (int64_t i = 0; i < count; i++)
+            column[i] = value[i][c];
+        result = store_write(sim, store_find(sim, name)->mem, 8 * (uint64_t)(c * sim->stride), 8 * (uint64_t)sim->stride, column, why);
+    }
+    free(column);
+    return result;
+}
+
+/* Grains that pad the last block have unit mass and radius, so that nothing divides by zero. */
+static status upload_scalars(simulation *sim, const bed *bed, failure *why)
+{
+    double *radius = malloc((size_t)sim->stride * sizeof *radius), *mass = malloc((size_t)sim->stride * sizeof *mass);
+    int32_t *id = malloc((size_t)sim->stride * sizeof *id), *material = calloc((size_t)sim->stride, sizeof *material);
+    status result = radius && mass && id && material ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
+    for (int64_t i = 0; result == STATUS_OK && i < sim->stride; i++) {
+        bool real = i < bed->count;
+        double r = real ? bed->radius[i] : 1.0;
+        radius[i] = r;
+        mass[i] = real ? 4.0 / 3.0 * M_PI * scene_material(sim->scene, bed->material[i], &property_density) * r * r * r : 1.0;
+        id[i] = (int32_t)i;
+        material[i] = real ? bed->material[i] : 0;
+    }
+    uint64_t n = (uint64_t)sim->stride;
+    if (result == STATUS_OK)
+        result = store_write(sim, store_find(sim, "radius")->mem, 0, 8 * n, radius, why);
+    if (result == STATUS_OK)
+        result = store_write(sim, store_find(sim, "mass")->mem, 0, 8 * n, mass, why);
+    if (result == STATUS_OK)
+        result = store_write(sim, store_find(sim, "id")->mem, 0, 4 * n, id, why);
+    if (result == STATUS_OK && store_find(sim, "material"))
+        result = store_write(sim, store_find(sim, "material")->mem, 0, 4 * n, material, why);
+    free(radius);
+    free(mass);
+    free(id);
+    free(material);
+    return result;
+}
+
+static status upload_bed(simulation *sim, const bed *bed, failure *why)
+{
+    TRY(upload_vectors(sim, "position", (const double(*)[3])bed->position, bed->count, why));
+    TRY(upload_vectors(sim, "velocity", (const double(*)[3])bed->velocity, bed->count, why));
+    if (store_find(sim, "spin"))
+        TRY(upload_vectors(sim, "spin", (const double(*)[3])bed->spin, bed->count, why));
+    TRY(upload_scalars(sim, bed, why));
+    stored_field *orientation = store_find(sim, "orientation");
+    if (!orientation)
+        return STATUS_OK;
+    const double one = 1.0;
+    TRY_CL(clEnqueueFillBuffer(sim->device->queue, orientation->mem, &one, sizeof one, 0, 8 * (size_t)sim->stride, 0, NULL, NULL), "orientation");
+    return STATUS_OK;
+}
+
+static status create_bodies(simulation *sim, failure *why)
+{
+    const scene *scene = sim->scene;
+    sim->wall_body = calloc((size_t)scene->wall_count + 1, sizeof *sim->wall_body);
+    sim->group_body = calloc((size_t)scene->group_count + 1, sizeof *sim->group_body);
+    if (!sim->wall_body || !sim->group_body)
+        return fail(why, STATUS_ERROR, "out of memory");
+    for (int w = 0; w < scene->wall_count; w++) {
+        moving_body_init(&sim->wall_body[w], &scene->wall[w].motion);
+        sim->face_count += wall_face_count(&scene->wall[w]);
+    }
+    for (int g = 0; g < scene->group_count; g++) {
+        moving_body_init(&sim->group_body[g], &scene->group[g].motion);
+        sim->group_held[g] = scene->group[g].fixed || scene->group[g].motion.count > 0;
+    }
+    sim->mover_count = sim->all.law[SLOT_MOTION] ? scene->group_count : 0;
+    return STATUS_OK;
+}
+
+static status create_buffers(simulation *sim, failure *why)
+{
+    TRY(store_fields(sim, why));
+    TRY(store_buffer(sim, &sim->built_position, field_bytes(sim, &field_position), "positions at the last table", why));
+    TRY(store_fill(sim, sim->built_position, field_bytes(sim, &field_position), why));
+    TRY(store_buffer(sim, &sim->where, 4 * (uint64_t)sim->stride, "indices of ids", why));
+    TRY(store_buffer(sim, &sim->control, sizeof(clast_control), "control words", why));
+    int width = live_constant_count(&sim->all);
+    TRY(store_buffer(sim, &sim->constants, 8 * (uint64_t)(width * live_class_count(&sim->all, sim->scene)), "contact constants", why));
+    return table_create(sim, why);
+}
+
+status simulation_create(const scene *scene, const bed *bed, device *device, const char *kernels_directory, simulation **out, failure *why)
+{
+    simulation *sim = calloc(1, sizeof *sim);
+    *out = sim;
+    if (!sim)
+        return fail(why, STATUS_ERROR, "out of memory");
+    sim->scene = scene;
+    sim->device = device;
+    sim->kernels_directory = kernels_directory ? strdup(kernels_directory) : NULL;
+    sim->id_count = sim->count = bed->count;
+    sim->stride = (bed->count + CLAST_BLOCK - 1) / CLAST_BLOCK * CLAST_BLOCK;
+    sim->group_held = calloc((size_t)scene->group_count + 1, sizeof *sim->group_held);
+    live_laws_of(scene, bed, &sim->all);
+    measure_bed(sim, bed);
+    sim->table.skin_is_given = !isnan(scene->table.skin_m);
+    sim->table.skin = sim->table.skin_is_given ? scene->table.skin_m : 0.1 * sim->mean_radius;
+    sim->batch_limit = scene->table.batch_steps > 0 ? scene->table.batch_steps : 64;
+    sim->batch_limit = sim->batch_limit > BATCH_STEPS_MAX ? BATCH_STEPS_MAX : sim->batch_limit;
+    sim->stage = -1;
+    TRY(check_periods(sim, why));
+    TRY(create_bodies(sim, why));
+    sim->group_of_id = malloc(sizeof *sim->group_of_id * (size_t)(bed->count + 1));
+    if (!sim->group_of_id || !sim->group_held)
+        return fail(why, STATUS_ERROR, "out of memory");
+    memcpy(sim->group_of_id, bed->group, sizeof *sim->group_of_id * (size_t)bed->count);
+    TRY(create_buffers(sim, why));
+    return upload_bed(sim, bed, why);
+}
+
+void simulation_free(simulation *sim)
+{
+    if (!sim)
+        return;
+    if (sim->device && sim->device->queue)
+        clFinish(sim->device->queue);
+    launch_close(sim);
+    table_free(sim);
+    for (int f = 0; f < sim->field_count; f++)
+        store_release(sim, &sim->field[f].mem, 0);
+    cl_mem *const rest[] = {&sim->where, &sim->partial, &sim->control, &sim->faces, &sim->movers, &sim->constants, &sim->built_position};
+    for (size_t m = 0; m < sizeof rest / sizeof *rest; m++)
+        store_release(sim, rest[m], 0);
+    free(sim->wall_body);
+    free(sim->group_body);
+    free(sim->group_held);
+    free(sim->group_of_id);
+    free(sim->face_rows);
+    free(sim->mover_rows);
+    free(sim->kernels_directory);
+    free(sim);
+}
+
+/* ---- walls and prescribed motion ---- */
+
+/* Rows for the steps of a batch: walls where they are at the start of each step, prescribed motions over it. What stands still has one. */
+static status fit_rows(simulation *sim, failure *why)
+{
+    int rows = sim->walls_move || sim->groups_move ? (int)sim->batch_limit : 1;
+    if (rows <= sim->batch_rows)
+        return STATUS_OK;
+    uint64_t faces = sizeof(clast_face) * (uint64_t)(sim->face_count * rows), movers = sizeof(clast_mover) * (uint64_t)(sim->mover_count * rows);
+    free(sim->face_rows);
+    free(sim->mover_rows);
+    sim->face_rows = malloc(faces + 1);
+    sim->mover_rows = malloc(movers + 1);
+    if (!sim->face_rows || !sim->mover_rows)
+        return fail(why, STATUS_ERROR, "out of memory");
+    store_release(sim, &sim->faces, sim->face_bytes);
+    store_release(sim, &sim->movers, sim->mover_bytes);
+    sim->face_bytes = faces;
+    sim->mover_bytes = movers;
+    if (sim->face_count > 0)
+        TRY(store_buffer(sim, &sim->faces, faces, "walls", why));
+    if (sim->mover_count > 0)
+        TRY(store_buffer(sim, &sim->movers, movers, "prescribed motions", why));
+    sim->batch_rows = rows;
+    return STATUS_OK;
+}
+
+static status write_rows(simulation *sim, int rows, failure *why)
+{
+    for (int row = 0; row < rows; row++) {
+        double time = sim->time + (double)row * sim->dt;
+        clast_face *face = sim->face_rows + row * sim->face_count;
+        for (int w = 0; w < sim->scene->wall_count; w++) {
+            body_pose pose = moving_body_pose(&sim->wall_body[w], time);
+            wall_faces(&sim->scene->wall[w], &pose, sim->scene->material_count + w, w, face);
+            face += wall_face_count(&sim->scene->wall[w]);
+        }
+        for (int g = 0; g < sim->mover_count; g++)
+            sim->mover_rows[row * sim->mover_count + g] = moving_body_step(&sim->group_body[g], time, sim->dt);
+    }
+    if (sim->face_count > 0)
+        TRY(store_write(sim, sim->faces, 0, sizeof(clast_face) * (uint64_t)(sim->face_count * rows), sim->face_rows, why));
+    if (sim->mover_count > 0)
+        TRY(store_write(sim, sim->movers, 0, sizeof(clast_mover) * (uint64_t)(sim->mover_count * rows), sim->mover_rows, why));
+    return STATUS_OK;
+}
+
+status simulation_pose_now(simulation *sim, failure *why)
+{
+    TRY(fit_rows(sim, why));
+    return write_rows(sim, 1, why);
+}
+
+/* How far a wall may have moved, against the common drift, since the table was built: an upper bound over what the bed can touch. */
+static double wall_travel(const simulation *sim, double time)
+{
+    double most = 0.0, span = 0.0;
+    for (int c = 0; c < 3; c++)
+        span += pow(sim->bed_high[c] - sim->bed_low[c] + 4.0 * sim->radius_max, 2);
+    for (int w = 0; w < sim->scene->wall_count; w++) {
+        const moving_body *body = &sim->wall_body[w];
+        body_pose before = moving_body_pose(body, sim->built_time), now = moving_body_pose(body, time);
+        double centre[3], a[3], b[3], apart = 0.0, speed = 0.0, turn = 0.0, reach = 0.0;
+        for (int c = 0; c < 3; c++)
+            centre[c] = 0.5 * (sim->bed_low[c] + sim->bed_high[c]);
+        pose_point(&before, centre, a);
+        pose_point(&now, centre, b);
+        for (int c = 0; c < 3; c++) {
+            apart += pow(b[c] - a[c] - sim->drift_velocity[c] * (time - sim->built_time), 2);
+            speed += pow(now.spin[c], 2);
+            reach += pow(centre[c] - now.pivot[c], 2);
+        }
+        turn = sqrt(speed) * (time - sim->built_time) * (sqrt(span) + sqrt(reach));
+        most = fmax(most, (speed > 0.0 ? 0.0 : sqrt(apart)) + turn);
+    }
+    return most;
+}
+
+/* Displacements count against the bed's mean velocity where no wall or prescribed grain holds it; against rest else. */
+status simulation_choose_drift(simulation *sim, failure *why)
+{
+    memset(sim->drift_velocity, 0, sizeof sim->drift_velocity);
+    if (sim->scene->wall_count > 0 || sim->mover_count > 0 || sim->count == 0)
+        return STATUS_OK;
+    particle_sums sums;
+    TRY(observe_particle_sums(sim, &sums, why));
+    for (int c = 0; c < 3; c++)
+        sim->drift_velocity[c] = sums.mass > 0.0 ? sums.momentum[c] / sums.mass : 0.0;
+    return STATUS_OK;
+}
+
+/* ---- stages ---- */
+
+static status upload_movers(simulation *sim, failure *why)
+{
+    stored_field *mover = store_find(sim, "mover");
+    if (!mover)
+        return STATUS_OK;
+    int32_t *id = malloc(sizeof *id * (size_t)sim->stride);
+    double *column[3] = {NULL, NULL, NULL};
+    status result = id ? store_read(sim, store_find(sim, "id")->mem, 0, 4 * (uint64_t)sim->stride, id, why) : fail(why, STATUS_ERROR, "out of memory");
+    for (int c = 0; c < 3 && result == STATUS_OK; c++) {
+        column[c] = malloc(sizeof **column * (size_t)sim->stride * 2);
+        result = column[c] ? store_read(sim, store_find(sim, "position")->mem, 8 * (uint64_t)(c * sim->stride), 8 * (uint64_t)sim->stride, column[c], why)
+                           : fail(why, STATUS_ERROR, "out of memory");
+        if (result == STATUS_OK)
+            result = store_read(sim, store_find(sim, "velocity")->mem, 8 * (uint64_t)(c * sim->stride), 8 * (uint64_t)sim->stride, column[c] + sim->stride, why);
+    }
+    for (int64_t i = 0; i < sim->stride && result == STATUS_OK; i++) {
+        int group = i < sim->count ? sim->group_of_id[id[i]] : -1;
+        id[i] = group >= 0 && sim->group_held[group] ? group : -1;
+        if (id[i] < 0)
+            continue;
+        body_pose pose = moving_body_pose(&sim->group_body[group], sim->time);
+        double arm[3];
+        for (int c = 0; c < 3; c++)
+            arm[c] = column[c][i] - pose.pivot[c];
+        for (int c = 0; c < 3; c++)
+            column[c][sim->stride + i] = pose.velocity[c] + pose.spin[(c + 1) % 3] * arm[(c + 2) % 3] - pose.spin[(c + 2) % 3] * arm[(c + 1) % 3];
+    }
+    if (result == STATUS_OK)
+        result = store_write(sim, mover->mem, 0, 4 * (uint64_t)sim->stride, id, why);
+    for (int c = 0; c < 3; c++) {
+        if (result == STATUS_OK)
+            result = store_write(sim, store_find(sim, "velocity")->mem, 8 * (uint64_t)(c * sim->stride), 8 * (uint64_t)sim->stride, column[c] + sim->stride, why);
+        free(column[c]);
+    }
+    free(id);
+    return result;
+}
+
+static void change_bodies(simulation *sim, const scene_stage *stage)
+{
+    for (int c = 0; c < stage->wall_change_count; c++)
+        if (stage->wall_change[c].motion_given)
+            moving_body_change(&sim->wall_body[stage->wall_change[c].wall], &stage->wall_change[c].motion, sim->time);
+    for (int c = 0; c < stage->group_change_count; c++) {
+        const group_change *change = &stage->group_change[c];
+        moving_body_change(&sim->group_body[change->group], &change->motion, sim->time);
+        sim->group_held[change->group] = !change->free;
+    }
+}
+
+static void note_movers(simulation *sim)
+{
+    sim->walls_move = sim->groups_move = false;
+    for (int w = 0; w < sim->scene->wall_count; w++)
+        sim->walls_move = sim->walls_move || moving_body_moves(&sim->wall_body[w]);
+    for (int g = 0; g < sim->mover_count; g++)
+        sim->groups_move = sim->groups_move || moving_body_moves(&sim->group_body[g]);
+    sim->batch_rows = 0;
+}
+
+/* History of laws that the stage switches off is gone. */
+static status forget_histories(simulation *sim, failure *why)
+{
+    for (int f = 0; f < sim->field_count; f++) {
+        const field *field = sim->field[f].field;
+        if (field->role == FIELD_HISTORY && !live_uses(&sim->live, field))
+            TRY(store_fill(sim, sim->field[f].mem, sim->table.record_stride > 0 ? field_bytes(sim, field) : 0, why));
+    }
+    return STATUS_OK;
+}
+
+static status upload_constants(simulation *sim, int stage, failure *why)
+{
+    size_t size = sizeof(double) * (size_t)(live_constant_count(&sim->live) * live_class_count(&sim->live, sim->scene));
+    double *constants = malloc(size);
+    if (!constants)
+        return fail(why, STATUS_ERROR, "out of memory");
+    live_class_constants(&sim->live, sim->scene, stage, constants);
+    status result = store_write(sim, sim->constants, 0, size, constants, why);
+    free(constants);
+    return result;
+}
+
+status simulation_enter_stage(simulation *sim, int stage, failure *why)
+{
+    const live_laws before = sim->live;
+    live_laws_in_stage(sim->scene, &sim->all, stage, &sim->live);
+    bool same = sim->program && memcmp(before.law, sim->live.law, sizeof before.law) == 0;
+    sim->stage = stage;
+    scene_gravity(sim->scene, stage, sim->gravity);
+    if (!same) {
+        launch_close(sim);
+        TRY(launch_open(sim, why));
+    }
+    TRY(forget_histories(sim, why));
+    note_movers(sim);
+    TRY(upload_constants(sim, stage, why));
+    TRY(simulation_pose_now(sim, why));
+    return table_build(sim, false, why);
+}
+
+status simulation_begin_stage(simulation *sim, int stage, failure *why)
+{
+    sim->stage_steps = 0;
+    change_bodies(sim, &sim->scene->stage[stage]);
+    TRY(upload_movers(sim, why));
+    return simulation_enter_stage(sim, stage, why);
+}
+
+/* ---- steps ---- */
+
+void simulation_set_step(simulation *sim, double dt)
+{
+    sim->segment_time = sim->time;
+    sim->segment_step = sim->step;
+    sim->dt = dt;
+}
+
+
+status simulation_count_leavers(simulation *sim, int64_t kept, failure *why)
+{
+    if (kept == sim->count)
+        return STATUS_OK;
+    int64_t gone = sim->count - kept;
+    int32_t *order = malloc(sizeof *order * (size_t)gone);
+    double *mass = malloc(sizeof *mass * (size_t)sim->stride);
+    status result = order && mass ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
+    if (result == STATUS_OK)
+        result = store_read(sim, sim->table.work[2], 4 * (uint64_t)kept, 4 * (uint64_t)gone, order, why);
+    if (result == STATUS_OK)
+        result = store_read(sim, store_find(sim, "mass")->mem, 0, 8 * (uint64_t)sim->stride, mass, why);
+    for (int64_t k = 0; k < gone && result == STATUS_OK; k++)
+        sim->left_mass += mass[order[k]];
+    free(order);
+    free(mass);
+    sim->left_count += gone;
+    sim->count = kept;
+    return result;
+}
+
+/* A skin that balances the pairs it adds against the tables it saves (docs/performance.md): pairs grow as 1 + 1.5 s/r, a table costs about 15
+ * steps and lasts s/(2 u) steps, u the displacement a step that the last one saw. */
+static void adapt_skin(simulation *sim)
+{
+    contact_table *t = &sim->table;
+    int64_t lasted = sim->step - sim->rebuild_step;
+    if (t->skin_is_given || !t->built || lasted <= 0)
+        return;
+    double used = 0.5 * t->skin / (double)lasted;
+    double best = sqrt(33.0 * used * sim->mean_radius);
+    best = fmin(fmax(best, t->skin / 1.5), t->skin * 1.5);
+    best = fmin(fmax(best, 0.05 * sim->mean_radius), 0.6 * sim->mean_radius);
+    const domain *d = &sim->scene->domain;
+    for (int c = 0; d->given && c < 3; c++)
+        if (d->periodic[c])
+            best = fmin(best, 0.5 * (d->high_m[c] - d->low_m[c]) - 2.0 * sim->radius_max);
+    t->skin = best;
+}
+
+static status enqueue_batch(simulation *sim, int steps, failure *why)
+{
+    cl_kernel pair = launch_kernel(sim, "pair_stage"), particle = launch_kernel(sim, "particle_stage");
+    clast_launch launch = launch_values(sim);
+    for (int s = 0; s < steps; s++) {
+        double since = sim->time + (double)(s + 1) * sim->dt - sim->built_time;
+        launch.step = s;
+        launch.face_row = sim->walls_move ? s : 0;
+        launch.mover_row = sim->groups_move ? s : 0;
+        for (int c = 0; c < 3; c++)
+            launch.drift[c] = sim->drift_velocity[c] * since;
+        TRY_CL(clSetKernelArg(pair, 0, sizeof launch, &launch), "pair_stage");
+        TRY_CL(clSetKernelArg(particle, 0, sizeof launch, &launch), "particle_stage");
+        TRY(launch_run(sim, pair, "pair_stage", sim->table.record_count, CLAST_BLOCK, why));
+        TRY(launch_run(sim, particle, "particle_stage", sim->count, CLAST_BLOCK, why));
+    }
+    return STATUS_OK;
+}
+
+/* Steps before a wall has used up its half of the skin. */
+static int steps_before_walls(const simulation *sim, int steps)
+{
+    if (!sim->walls_move)
+        return steps;
+    for (int s = 0; s < steps; s++)
+        if (wall_travel(sim, sim->time + (double)s * sim->dt) > 0.5 * sim->table.skin)
+            return s;
+    return steps;
+}
+
+/* One batch; *done of the steps asked for were taken, and *rebuild tells that a table is due before the next. */
+static status run_batch(simulation *sim, int steps, int *done, bool *rebuild, failure *why)
+{
+    clast_control control = {steps, 0, {0, 0}};
+    if (sim->walls_move || sim->groups_move)
+        TRY(write_rows(sim, steps, why));
+    TRY(store_write(sim, sim->control, 0, sizeof control, &control, why));
+    TRY(enqueue_batch(sim, steps, why));
+    TRY(store_read(sim, sim->control, 0, sizeof control, &control, why));
+    *done = control.halt_step < steps ? control.halt_step : steps;
+    *rebuild = control.reason != 0;
+    return STATUS_OK;
+}
+
+status simulation_advance(simulation *sim, int64_t steps, failure *why)
+{
+    double start = seconds(), rebuilding = sim->rebuild_seconds;
+    while (steps > 0) {
+        int64_t most = sim->batch_limit < steps ? sim->batch_limit : steps;
+        int allowed = steps_before_walls(sim, (int)most), done = 0;
+        bool rebuild = allowed == 0;
+        if (allowed == 0 && sim->step == sim->rebuild_step && sim->table.built)
+            allowed = 1; /* a wall that outruns the skin in one step: a table a step */
+        if (allowed > 0)
+            TRY(run_batch(sim, allowed, &done, &rebuild, why));
+        sim->step += done;
+        sim->stage_steps += done;
+        sim->time = sim->segment_time + (double)(sim->step - sim->segment_step) * sim->dt;
+        steps -= done;
+        if (rebuild) {
+            adapt_skin(sim);
+            TRY(simulation_pose_now(sim, why));
+            TRY(table_build(sim, false, why));
+        }
+    }
+    sim->step_seconds += seconds() - start - (sim->rebuild_seconds - rebuilding);
+    return STATUS_OK;
+}

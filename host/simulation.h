@@ -1,0 +1,196 @@
+/* A bed on a device: fields, contact table, programs, and the step. What is due between steps (frames, guards, ends of stages) is run.c's. */
+#ifndef CLAST_HOST_SIMULATION_H
+#define CLAST_HOST_SIMULATION_H
+#include "bed.h"
+#include "bundle.h"
+#include "device.h"
+#include "live.h"
+#include "pose.h"
+#include "scene.h"
+
+#include <clast/shared.h>
+
+#define SIMULATION_FIELDS_MAX 32
+#define SIMULATION_KERNELS_MAX 40
+#define BATCH_STEPS_MAX 1024
+
+/* One array on the device. */
+typedef struct stored_field {
+    const field *field;
+    cl_mem mem;
+} stored_field;
+
+typedef struct kernel_slot {
+    const char *name;
+    cl_kernel kernel;
+} kernel_slot;
+
+/* The contact table: packed records, slots of every grain, and the arrays that build them. Two generations stand side by side while
+ * histories are carried over. */
+typedef struct contact_table {
+    cl_mem owner[2], other[2], slots[2], slot_offset[2];
+    int now; /* generation in use */
+    int64_t record_capacity, slot_capacity, cell_capacity;
+    int64_t slots_held[2]; /* of each generation */
+    bool slots_outgrown[2];
+    int pair_count, wall_base, record_count; /* record_count: end of the wall records, filled up to a work-group */
+    int wall_record_count;
+    int64_t record_stride;
+    cl_mem match;
+    cl_mem work[5]; /* per particle, 32 bits */
+    cl_mem cell_count, cell_start, sums, grid, width;
+    clast_grid grid_host;
+    double skin;
+    bool skin_is_given;
+    bool built;
+} contact_table;
+
+typedef struct step_limit {
+    double limit_s;       /* largest stable step; infinite where nothing binds */
+    double recommended_s; /* half the limit, and a tenth of the shortest contact */
+    char binds[64];       /* "normal", "tangential and rolling", "tenth of the contact", ... */
+    double contact_s;     /* duration of the shortest contact expected, 0: none */
+    double live_s, expected_s; /* limits from the contacts there are, and from those to be expected */
+} step_limit;
+
+typedef struct simulation {
+    const scene *scene;
+    device *device;
+    char *kernels_directory;
+    live_laws live, all; /* of the stage, and the union over stages */
+    int stage;
+    cl_program program;
+    kernel_slot kernel[SIMULATION_KERNELS_MAX];
+    int kernel_count;
+    stored_field field[SIMULATION_FIELDS_MAX];
+    int field_count;
+
+    int64_t id_count;       /* grains of the scene */
+    int64_t count;          /* grains still there */
+    int64_t stride;         /* elements a component, a multiple of the block */
+    bool particles_stale;   /* `where` lags behind */
+    cl_mem where, partial, control, faces, movers, constants, built_position;
+    int64_t partial_capacity;
+    contact_table table;
+
+    int face_count, mover_count;
+    moving_body *wall_body, *group_body;
+    bool walls_move, groups_move;
+    clast_face *face_rows;   /* host rows of a batch */
+    clast_mover *mover_rows;
+    int batch_rows;          /* rows allocated */
+    uint64_t face_bytes, mover_bytes;
+    int32_t *group_of_id;
+    bool *group_held;        /* by group: held or moved as prescribed, now */
+    int64_t batch_limit;     /* steps a batch, now */
+
+    double gravity[3];
+    double time;             /* s */
+    int64_t step;
+    double dt;               /* of the steps to come */
+    double segment_time;     /* time = segment_time + (step - segment_step) dt while dt stays */
+    int64_t segment_step, stage_steps;
+    double built_time;       /* when the table was built */
+    double drift_velocity[3];
+    double mean_radius, radius_min, radius_max, mean_mass;
+    double bed_low[3], bed_high[3]; /* where cells are laid: the domain, or the bed as generated */
+    int64_t rebuilds, rebuild_step; /* step of the last one */
+    double rebuild_seconds, step_seconds; /* wall time */
+    int64_t left_count;
+    double left_mass;
+    uint64_t bytes;          /* on the device */
+} simulation;
+
+status simulation_create(const scene *scene, const bed *bed, device *device, const char *kernels_directory, simulation **out, failure *why);
+void simulation_free(simulation *sim);
+/* The step to take from here on. */
+void simulation_set_step(simulation *sim, double dt);
+/* Takes up the laws, gravity, motions and constants of a scene stage. */
+status simulation_begin_stage(simulation *sim, int stage, failure *why);
+/* The same without its changes of motion: for a state that is already in the stage. */
+status simulation_enter_stage(simulation *sim, int stage, failure *why);
+/* Takes n steps of sim->dt; builds tables on the way. Grains that leave are deleted where the scene says so, else STATUS_GUARD. */
+status simulation_advance(simulation *sim, int64_t steps, failure *why);
+/* After a sort that put the leavers last: takes note of them; `kept` grains remain. */
+status simulation_count_leavers(simulation *sim, int64_t kept, failure *why);
+/* Displacements are measured against this velocity until the next table. */
+status simulation_choose_drift(simulation *sim, failure *why);
+/* Faces and movers for the step that starts at the present time, as row 0. */
+status simulation_pose_now(simulation *sim, failure *why);
+
+/* store.c: arrays and kernels by name */
+status store_buffer(simulation *sim, cl_mem *mem, uint64_t bytes, const char *what, failure *why);
+void store_release(simulation *sim, cl_mem *mem, uint64_t bytes);
+status store_fields(simulation *sim, failure *why);
+stored_field *store_find(simulation *sim, const char *name);
+uint64_t field_bytes(const simulation *sim, const field *field);
+status store_write(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, const void *data, failure *why);
+status store_read(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, void *data, failure *why);
+status store_fill(simulation *sim, cl_mem mem, uint64_t bytes, failure *why);
+/* Zeroes `count` 32-bit words from word `first` on. */
+status store_clear_ints(simulation *sim, cl_mem mem, int64_t first, int64_t count, failure *why);
+status store_copy(simulation *sim, cl_mem from, cl_mem to, uint64_t from_offset, uint64_t to_offset, uint64_t bytes, failure *why);
+extern const field field_position, field_velocity, field_radius, field_mass, field_id, field_force;
+
+/* launch.c: kernels of the program, their arguments by the descriptors */
+status launch_open(simulation *sim, failure *why);
+void launch_close(simulation *sim);
+/* Names of the arguments of a stage after launch and control, by walking the descriptors; returns how many. */
+int launch_argument_names(const live_laws *live, const char *kernel, const char **names, int max);
+/* Sets the fields of one of the stages that read records or grains, from argument `first` on. */
+status launch_bind(simulation *sim, const char *kernel, int first, failure *why);
+status launch_bind_stages(simulation *sim, failure *why);
+cl_kernel launch_kernel(simulation *sim, const char *name);
+clast_launch launch_values(const simulation *sim);
+status launch_run(simulation *sim, cl_kernel kernel, const char *name, int64_t items, int64_t group, failure *why);
+/* Sets arguments first.. in order: 'm' cl_mem, 'i' int, 'l' clast_i64, 'd' double, 'L' const clast_launch *. */
+status launch_set(cl_kernel kernel, const char *name, failure *why, const char *types, ...);
+
+/* table.c */
+status table_create(simulation *sim, failure *why);
+void table_free(simulation *sim);
+/* Sorts the grains and builds the table anew, histories carried over. drop_outside: grains outside the domain leave for good. */
+status table_build(simulation *sim, bool drop_outside, failure *why);
+uint64_t table_bytes(const simulation *sim);
+
+/* limit.c */
+status limit_find(simulation *sim, step_limit *out, failure *why);
+
+/* observe.c */
+typedef struct particle_sums {
+    double kinetic, rotational, gravitational, mass, momentum[3], angular[3], speed_max, weight_radius; /* weight_radius: sum of m r */
+} particle_sums;
+typedef struct contact_sums {
+    double overlap_max, elastic;
+    int64_t contacts, pairs; /* contacts: live records; pairs: of them between grains */
+} contact_sums;
+/* A live contact, on the host. */
+typedef struct live_contact {
+    int32_t i, j, wall; /* permanent ids; j -1 at a wall */
+    double overlap, area, force[3], torque_wall[3];
+} live_contact;
+/* Room on the device for `doubles` results of a reduction. */
+status observe_partial(simulation *sim, int64_t doubles, failure *why);
+status observe_where(simulation *sim, failure *why);
+status observe_particle_sums(simulation *sim, particle_sums *out, failure *why);
+status observe_contact_sums(simulation *sim, contact_sums *out, failure *why);
+/* Live contacts in the order of ids; forces as they stand. walls_only leaves the pairs out. Caller frees. */
+status observe_contacts(simulation *sim, bool walls_only, live_contact **out, int64_t *count, failure *why);
+/* Volume-averaged stress times volume: sum of f_a l_b over contacts, row-major, J. */
+status observe_virial(simulation *sim, double *stress, failure *why);
+/* Host copy of a particle field in permanent-id order, [id_count][components]; NAN (or -1) where the grain has left. Caller frees. */
+status observe_field(simulation *sim, const char *name, double **out, failure *why);
+
+/* guard.c */
+typedef struct guard_finding {
+    bool stop;
+    char text[1024];
+} guard_finding;
+status guard_check(simulation *sim, guard_finding *out, failure *why);
+
+/* state.c */
+/* Everything needed to go on bit for bit, into a bundle; and back into a simulation made from the same scene. */
+status state_save(simulation *sim, bundle *out, failure *why);
+status state_load(simulation *sim, const bundle *in, const char *path, failure *why);
+
+#endif

@@ -1,0 +1,120 @@
+/* Arrays on the device: allocation held against its limits, copies, and fields by name. */
+#include "laws/fields.h"
+#include "simulation.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const field field_position = {"position", PER_PARTICLE, FIELD_REAL, 3, FIELD_STATE, "m", "position of the centre"};
+const field field_velocity = {"velocity", PER_PARTICLE, FIELD_REAL, 3, FIELD_STATE, "m/s", "velocity"};
+const field field_radius = {"radius", PER_PARTICLE, FIELD_REAL, 1, FIELD_STATE, "m", "radius"};
+const field field_mass = {"mass", PER_PARTICLE, FIELD_REAL, 1, FIELD_STATE, "kg", "mass"};
+const field field_id = {"id", PER_PARTICLE, FIELD_INT, 1, FIELD_STATE, "", "permanent id"};
+const field field_force = {"force", PER_RECORD, FIELD_REAL, 3, FIELD_RESULT, "N", "force of a contact on its owner"};
+
+status store_buffer(simulation *sim, cl_mem *mem, uint64_t bytes, const char *what, failure *why)
+{
+    const device_info *info = &sim->device->info;
+    bytes = bytes > 64 ? bytes : 64;
+    if (sim->bytes + bytes > info->usable_bytes)
+        return fail(why, STATUS_DEVICE, "%s does not hold this scene: %s needs %.3f GB on top of %.3f GB, %.3f GB can be used; use fewer grains or a larger device",
+                    info->name, what, 1e-9 * (double)bytes, 1e-9 * (double)sim->bytes, 1e-9 * (double)info->usable_bytes);
+    if (!info->cpu && bytes > info->buffer_bytes)
+        return fail(why, STATUS_DEVICE, "%s does not allow buffers of more than %.3f GB; %s needs %.3f GB", info->name,
+                    1e-9 * (double)info->buffer_bytes, what, 1e-9 * (double)bytes);
+    cl_int code;
+    *mem = clCreateBuffer(sim->device->context, CL_MEM_READ_WRITE, bytes, NULL, &code);
+    if (code != CL_SUCCESS) {
+        *mem = NULL;
+        return fail(why, STATUS_DEVICE, "%s cannot allocate %.3f GB for %s (%s), with %.3f GB allocated before", info->name, 1e-9 * (double)bytes,
+                    what, device_error_name(code), 1e-9 * (double)sim->bytes);
+    }
+    sim->bytes += bytes;
+    return STATUS_OK;
+}
+
+void store_release(simulation *sim, cl_mem *mem, uint64_t bytes)
+{
+    if (*mem) {
+        clReleaseMemObject(*mem);
+        sim->bytes -= bytes > 64 ? bytes : 64;
+    }
+    *mem = NULL;
+}
+
+uint64_t field_bytes(const simulation *sim, const field *field)
+{
+    uint64_t item = field->type == FIELD_REAL ? sizeof(double) : sizeof(int32_t);
+    uint64_t stride = (uint64_t)(field->extent == PER_RECORD ? sim->table.record_stride : sim->stride);
+    return item * stride * (uint64_t)field->components;
+}
+
+static status add_field(simulation *sim, const field *field, failure *why)
+{
+    if (!field || field->extent == PER_SCENE || store_find(sim, field->name))
+        return STATUS_OK;
+    stored_field *stored = &sim->field[sim->field_count];
+    TRY(store_buffer(sim, &stored->mem, field_bytes(sim, field), field->name, why));
+    stored->field = field;
+    sim->field_count++;
+    return store_fill(sim, stored->mem, field_bytes(sim, field), why);
+}
+
+/* What the core needs, and what the live laws of any stage ask for; nothing else. */
+status store_fields(simulation *sim, failure *why)
+{
+    const field *const core[] = {&field_position, &field_velocity, &field_radius, &field_mass, &field_id, &field_force};
+    for (size_t f = 0; f < sizeof core / sizeof *core; f++)
+        TRY(add_field(sim, core[f], why));
+    for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
+        for (int f = 0; sim->all.law[slot] && f < LAW_ARGUMENTS_MAX; f++) {
+            TRY(add_field(sim, sim->all.law[slot]->pair_fields[f], why));
+            TRY(add_field(sim, sim->all.law[slot]->particle_fields[f], why));
+        }
+    return STATUS_OK;
+}
+
+stored_field *store_find(simulation *sim, const char *name)
+{
+    for (int f = 0; f < sim->field_count; f++)
+        if (strcmp(sim->field[f].field->name, name) == 0)
+            return &sim->field[f];
+    return NULL;
+}
+
+status store_write(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, const void *data, failure *why)
+{
+    if (bytes > 0)
+        TRY_CL(clEnqueueWriteBuffer(sim->device->queue, mem, CL_TRUE, offset, bytes, data, 0, NULL, NULL), "writing to the device");
+    return STATUS_OK;
+}
+
+status store_read(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, void *data, failure *why)
+{
+    if (bytes > 0)
+        TRY_CL(clEnqueueReadBuffer(sim->device->queue, mem, CL_TRUE, offset, bytes, data, 0, NULL, NULL), "reading from the device");
+    return STATUS_OK;
+}
+
+status store_fill(simulation *sim, cl_mem mem, uint64_t bytes, failure *why)
+{
+    const cl_uint zero = 0;
+    if (bytes > 0)
+        TRY_CL(clEnqueueFillBuffer(sim->device->queue, mem, &zero, sizeof zero, 0, bytes, 0, NULL, NULL), "clearing a buffer");
+    return STATUS_OK;
+}
+
+status store_copy(simulation *sim, cl_mem from, cl_mem to, uint64_t from_offset, uint64_t to_offset, uint64_t bytes, failure *why)
+{
+    if (bytes > 0)
+        TRY_CL(clEnqueueCopyBuffer(sim->device->queue, from, to, from_offset, to_offset, bytes, 0, NULL, NULL), "copying on the device");
+    return STATUS_OK;
+}
+
+status store_clear_ints(simulation *sim, cl_mem mem, int64_t first, int64_t count, failure *why)
+{
+    const cl_uint zero = 0;
+    TRY_CL(clEnqueueFillBuffer(sim->device->queue, mem, &zero, sizeof zero, 4 * (size_t)first, 4 * (size_t)count, 0, NULL, NULL),
+           "clearing a buffer");
+    return STATUS_OK;
+}

@@ -1,0 +1,410 @@
+/* The contact table on the device: see kernels/stage/table.cl. The host drives the launches and grows what is too small. */
+#include "simulation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define SCAN_CHUNK 1024
+#define GROUP CLAST_BLOCK
+/* Reserve on growth, so that a bed that gets denser does not allocate at every table. */
+#define RESERVE 1.08
+
+enum { WORK_A, WORK_B, WORK_C, WORK_D, WORK_E };
+
+static int64_t round_up(int64_t value, int64_t step)
+{
+    return (value + step - 1) / step * step;
+}
+
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+status table_create(simulation *sim, failure *why)
+{
+    contact_table *t = &sim->table;
+    int64_t blocks = sim->stride / CLAST_BLOCK;
+    t->record_stride = 0;
+    for (int w = 0; w < 5; w++)
+        TRY(store_buffer(sim, &t->work[w], 4 * (uint64_t)(sim->stride + 1), "the contact table", why));
+    for (int g = 0; g < 2; g++) {
+        TRY(store_buffer(sim, &t->slot_offset[g], 4 * (uint64_t)(blocks + 1), "the contact table", why));
+        TRY(store_fill(sim, t->slot_offset[g], 4 * (uint64_t)(blocks + 1), why));
+    }
+    TRY(store_buffer(sim, &t->width, 4 * (uint64_t)(blocks + 1), "the contact table", why));
+    return store_buffer(sim, &t->grid, sizeof(clast_grid), "the contact table", why);
+}
+
+static void release_pair(simulation *sim, cl_mem *mem, uint64_t bytes)
+{
+    store_release(sim, &mem[0], bytes);
+    store_release(sim, &mem[1], bytes);
+}
+
+void table_free(simulation *sim)
+{
+    contact_table *t = &sim->table;
+    release_pair(sim, t->owner, 0);
+    release_pair(sim, t->other, 0);
+    release_pair(sim, t->slots, 0);
+    release_pair(sim, t->slot_offset, 0);
+    cl_mem *const rest[] = {&t->match, &t->work[0], &t->work[1], &t->work[2], &t->work[3], &t->work[4], &t->cell_count, &t->cell_start, &t->sums, &t->grid, &t->width};
+    for (size_t m = 0; m < sizeof rest / sizeof *rest; m++)
+        store_release(sim, rest[m], 0);
+}
+
+/* Cells of one level along one direction. A periodic length is divided evenly; else cells start at the bed's low corner and wrap, so that
+ * grains beyond the corner are found too. */
+static void set_level(const simulation *sim, double size, double low[3], double high[3], clast_level *level)
+{
+    const domain *d = &sim->scene->domain;
+    double cells[3], total = 1.0, most = 2.0 * (double)sim->id_count + 64.0;
+    for (int c = 0; c < 3; c++) {
+        cells[c] = floor((high[c] - low[c]) / size);
+        bool periodic = d->given && d->periodic[c];
+        cells[c] = fmin(fmax(periodic ? cells[c] : cells[c] + 1.0, 1.0), 1e6);
+        total *= cells[c];
+    }
+    for (int c = 0; c < 3 && total > most; c++) {
+        double shrink = fmin(cells[c], fmax(1.0, floor(cells[c] * pow(most / total, 1.0 / (3 - c)))));
+        total *= shrink / cells[c];
+        cells[c] = shrink;
+    }
+    for (int c = 0; c < 3; c++) {
+        bool periodic = d->given && d->periodic[c];
+        level->cells[c] = (clast_i32)cells[c];
+        level->inverse_size[c] = periodic ? cells[c] / (high[c] - low[c]) : 1.0 / size;
+    }
+}
+
+static void set_grid(simulation *sim, bool drop_outside)
+{
+    contact_table *t = &sim->table;
+    clast_grid *g = &t->grid_host;
+    memset(g, 0, sizeof *g);
+    g->radius_max = sim->radius_max;
+    g->skin = t->skin;
+    g->drop_outside = drop_outside;
+    memcpy(g->origin, sim->bed_low, sizeof g->origin);
+    int levels = 1;
+    while (levels < CLAST_LEVELS_MAX && sim->radius_max / pow(2.0, levels) > sim->radius_min)
+        levels++;
+    g->level_count = levels;
+    for (int l = 0; l < levels; l++) {
+        set_level(sim, 2.0 * sim->radius_max / pow(2.0, l) + t->skin, sim->bed_low, sim->bed_high, &g->level[l]);
+        g->level[l].first_cell = g->cell_count;
+        g->cell_count += g->level[l].cells[0] * g->level[l].cells[1] * g->level[l].cells[2];
+    }
+}
+
+static status grow(simulation *sim, cl_mem *mem, uint64_t old_bytes, uint64_t bytes, failure *why)
+{
+    store_release(sim, mem, old_bytes);
+    return store_buffer(sim, mem, bytes, "the contact table", why);
+}
+
+/* Chunk sums of the longest scan: over cells, or over grains. */
+static uint64_t sum_bytes(const simulation *sim, int64_t cells)
+{
+    int64_t most = cells + 1 > sim->stride ? cells + 1 : sim->stride;
+    return 4 * (uint64_t)(most / SCAN_CHUNK + 2);
+}
+
+static status fit_cells(simulation *sim, failure *why)
+{
+    contact_table *t = &sim->table;
+    int64_t cells = t->grid_host.cell_count + 1;
+    if (cells > t->cell_capacity) {
+        int64_t now = cells + cells / 8;
+        TRY(grow(sim, &t->cell_count, 4 * (uint64_t)(t->cell_capacity + 1), 4 * (uint64_t)(now + 1), why));
+        TRY(grow(sim, &t->cell_start, 4 * (uint64_t)(t->cell_capacity + 1), 4 * (uint64_t)(now + 1), why));
+        TRY(grow(sim, &t->sums, sum_bytes(sim, t->cell_capacity), sum_bytes(sim, now), why));
+        t->cell_capacity = now;
+    }
+    return STATUS_OK;
+}
+
+/* result[0..count] from values[0..count). */
+static status scan(simulation *sim, cl_mem values, cl_mem result, int64_t count, failure *why)
+{
+    contact_table *t = &sim->table;
+    int chunks = (int)((count + SCAN_CHUNK - 1) / SCAN_CHUNK);
+    cl_kernel a = launch_kernel(sim, "scan_chunks"), b = launch_kernel(sim, "scan_sums"), c = launch_kernel(sim, "scan_write");
+    TRY(launch_set(a, "scan_chunks", why, "mmi", values, t->sums, (cl_int)count));
+    TRY(launch_run(sim, a, "scan_chunks", chunks, 1, why));
+    TRY(launch_set(b, "scan_sums", why, "mi", t->sums, chunks));
+    TRY(launch_run(sim, b, "scan_sums", 1, 1, why));
+    TRY(launch_set(c, "scan_write", why, "mmmi", values, t->sums, result, (cl_int)count));
+    return launch_run(sim, c, "scan_write", chunks, 1, why);
+}
+
+/* order[new] = old in work C; sim->count falls by what left the domain. */
+static status sort_grains(simulation *sim, const clast_launch *launch, failure *why)
+{
+    contact_table *t = &sim->table;
+    int cells = t->grid_host.cell_count;
+    cl_mem position = store_find(sim, "position")->mem, radius = store_find(sim, "radius")->mem, id = store_find(sim, "id")->mem;
+    cl_kernel bin = launch_kernel(sim, "table_bin"), order = launch_kernel(sim, "table_order"), inside = launch_kernel(sim, "table_order_cells");
+    TRY(store_fill(sim, t->cell_count, 4 * (uint64_t)(cells + 1), why));
+    TRY(launch_set(bin, "table_bin", why, "Lmmmmmm", launch, t->grid, position, radius, t->work[WORK_A], t->work[WORK_B], t->cell_count));
+    TRY(launch_run(sim, bin, "table_bin", sim->count, GROUP, why));
+    TRY(scan(sim, t->cell_count, t->cell_start, cells + 1, why));
+    TRY(launch_set(order, "table_order", why, "Lmmmm", launch, t->work[WORK_A], t->work[WORK_B], t->cell_start, t->work[WORK_C]));
+    TRY(launch_run(sim, order, "table_order", sim->count, GROUP, why));
+    TRY(launch_set(inside, "table_order_cells", why, "mmmi", t->cell_start, id, t->work[WORK_C], cells + 1));
+    TRY(launch_run(sim, inside, "table_order_cells", cells + 1, GROUP, why));
+    if (t->grid_host.drop_outside) {
+        cl_uint kept;
+        TRY(store_read(sim, t->cell_start, 4 * (uint64_t)cells, sizeof kept, &kept, why));
+        TRY(simulation_count_leavers(sim, kept, why));
+    }
+    return STATUS_OK;
+}
+
+static status permute_real(simulation *sim, const clast_launch *launch, cl_mem mem, int components, failure *why)
+{
+    cl_kernel kernel = launch_kernel(sim, "table_permute_real");
+    for (int first = 0; first < components; first += 3) {
+        int some = components - first < 3 ? components - first : 3;
+        TRY(launch_set(kernel, "table_permute_real", why, "Lmmmii", launch, sim->table.work[WORK_C], mem, sim->built_position, first, some));
+        TRY(launch_run(sim, kernel, "table_permute_real", sim->count, GROUP, why));
+        for (int c = 0; c < some; c++)
+            TRY(store_copy(sim, sim->built_position, mem, 8 * (uint64_t)(c * sim->stride), 8 * (uint64_t)((first + c) * sim->stride),
+                           8 * (uint64_t)sim->count, why));
+    }
+    return STATUS_OK;
+}
+
+static status permute_fields(simulation *sim, const clast_launch *launch, failure *why)
+{
+    cl_kernel kernel = launch_kernel(sim, "table_permute_int");
+    for (int f = 0; f < sim->field_count; f++) {
+        const field *field = sim->field[f].field;
+        cl_mem mem = sim->field[f].mem;
+        if (field->extent != PER_PARTICLE || field->role != FIELD_STATE)
+            continue;
+        if (field->type == FIELD_REAL) {
+            TRY(permute_real(sim, launch, mem, field->components, why));
+            continue;
+        }
+        TRY(launch_set(kernel, "table_permute_int", why, "Lmmm", launch, sim->table.work[WORK_C], mem, sim->table.work[WORK_B]));
+        TRY(launch_run(sim, kernel, "table_permute_int", sim->count, GROUP, why));
+        TRY(store_copy(sim, sim->table.work[WORK_B], mem, 0, 0, 4 * (uint64_t)sim->count, why));
+    }
+    return STATUS_OK;
+}
+
+/* Owned pairs into work A, their starts into D, wall records' starts into E, slots of every grain into B. */
+static status count_records(simulation *sim, const clast_launch *launch, failure *why)
+{
+    contact_table *t = &sim->table;
+    cl_mem position = store_find(sim, "position")->mem, radius = store_find(sim, "radius")->mem, id = store_find(sim, "id")->mem;
+    cl_kernel count = launch_kernel(sim, "table_count"), walls = launch_kernel(sim, "table_count_walls");
+    TRY(store_fill(sim, t->work[WORK_B], 4 * (uint64_t)sim->stride, why));
+    TRY(launch_set(count, "table_count", why, "Lmmmmmmm", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_A], t->work[WORK_B]));
+    TRY(launch_run(sim, count, "table_count", sim->stride, GROUP, why));
+    TRY(scan(sim, t->work[WORK_A], t->work[WORK_D], sim->stride, why));
+    t->wall_record_count = 0;
+    cl_uint total;
+    TRY(store_read(sim, t->work[WORK_D], 4 * (uint64_t)sim->stride, sizeof total, &total, why));
+    t->pair_count = (int)total;
+    if (walls) {
+        TRY(launch_set(walls, "table_count_walls", why, "Lmmmmmm", launch, t->grid, position, radius, sim->faces, t->work[WORK_A], t->work[WORK_B]));
+        TRY(launch_run(sim, walls, "table_count_walls", sim->stride, GROUP, why));
+        TRY(scan(sim, t->work[WORK_A], t->work[WORK_E], sim->stride, why));
+        TRY(store_read(sim, t->work[WORK_E], 4 * (uint64_t)sim->stride, sizeof total, &total, why));
+        t->wall_record_count = (int)total;
+    }
+    t->wall_base = (int)round_up(t->pair_count, GROUP);
+    t->record_count = (int)round_up(t->wall_base + t->wall_record_count, GROUP);
+    return STATUS_OK;
+}
+
+/* The generation that is not in use, and what both share, hold at least `records` and `slots`. Histories move in carry_histories. */
+static status fit_records(simulation *sim, int64_t old_record_stride, failure *why)
+{
+    contact_table *t = &sim->table;
+    int64_t need = t->record_count;
+    if (need <= t->record_capacity)
+        return STATUS_OK;
+    int64_t capacity = round_up((int64_t)((double)need * RESERVE) + GROUP, GROUP);
+    int next = 1 - t->now;
+    uint64_t old = 4 * (uint64_t)t->record_capacity, bytes = 4 * (uint64_t)capacity;
+    TRY(grow(sim, &t->owner[next], old, bytes, why));
+    TRY(grow(sim, &t->other[next], old, bytes, why));
+    TRY(grow(sim, &t->match, old, bytes, why));
+    t->record_capacity = capacity;
+    t->record_stride = capacity;
+    (void)old_record_stride;
+    return STATUS_OK;
+}
+
+static status fit_slots(simulation *sim, int64_t slots, failure *why)
+{
+    contact_table *t = &sim->table;
+    int next = 1 - t->now;
+    if (slots > t->slot_capacity) {
+        t->slot_capacity = (int64_t)((double)slots * RESERVE) + GROUP;
+        t->slots_outgrown[0] = t->slots_outgrown[1] = true;
+    }
+    if (!t->slots_outgrown[next] && t->slots[next])
+        return STATUS_OK;
+    TRY(grow(sim, &t->slots[next], 4 * (uint64_t)t->slots_held[next], 4 * (uint64_t)t->slot_capacity, why));
+    t->slots_held[next] = t->slot_capacity;
+    t->slots_outgrown[next] = false;
+    return STATUS_OK;
+}
+
+static status fill_records(simulation *sim, const clast_launch *launch, failure *why)
+{
+    contact_table *t = &sim->table;
+    int next = 1 - t->now;
+    cl_mem position = store_find(sim, "position")->mem, radius = store_find(sim, "radius")->mem, id = store_find(sim, "id")->mem;
+    cl_kernel fill = launch_kernel(sim, "table_fill"), walls = launch_kernel(sim, "table_fill_walls"), pad = launch_kernel(sim, "table_pad");
+    TRY(launch_set(fill, "table_fill", why, "Lmmmmmmmm", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_D], t->owner[next],
+                   t->other[next]));
+    TRY(launch_run(sim, fill, "table_fill", sim->count, GROUP, why));
+    TRY(launch_set(pad, "table_pad", why, "mmii", t->owner[next], t->other[next], t->pair_count, t->wall_base));
+    TRY(launch_run(sim, pad, "table_pad", t->wall_base - t->pair_count, GROUP, why));
+    int end = t->wall_base + t->wall_record_count;
+    if (walls) {
+        TRY(launch_set(walls, "table_fill_walls", why, "Lmmmmmmmi", launch, t->grid, position, radius, sim->faces, t->work[WORK_E], t->owner[next],
+                       t->other[next], t->wall_base));
+        TRY(launch_run(sim, walls, "table_fill_walls", sim->count, GROUP, why));
+    }
+    TRY(launch_set(pad, "table_pad", why, "mmii", t->owner[next], t->other[next], end, t->record_count));
+    return launch_run(sim, pad, "table_pad", t->record_count - end, GROUP, why);
+}
+
+static status fill_slots(simulation *sim, const clast_launch *launch, failure *why)
+{
+    contact_table *t = &sim->table;
+    int next = 1 - t->now, end = t->wall_base + t->wall_record_count;
+    int64_t blocks = sim->stride / CLAST_BLOCK;
+    cl_mem id = store_find(sim, "id")->mem;
+    cl_kernel widths = launch_kernel(sim, "table_widths"), slots = launch_kernel(sim, "table_slots"), sort = launch_kernel(sim, "table_sort_slots");
+    TRY(launch_set(widths, "table_widths", why, "mm", t->work[WORK_B], t->width));
+    TRY(launch_run(sim, widths, "table_widths", blocks, 1, why));
+    TRY(scan(sim, t->width, t->slot_offset[next], blocks, why));
+    cl_uint total;
+    TRY(store_read(sim, t->slot_offset[next], 4 * (uint64_t)blocks, sizeof total, &total, why));
+    TRY(fit_slots(sim, total, why));
+    TRY(store_fill(sim, t->slots[next], 4 * (uint64_t)total, why));
+    TRY(store_fill(sim, t->work[WORK_A], 4 * (uint64_t)sim->stride, why));
+    TRY(launch_set(slots, "table_slots", why, "mmmmmiii", t->owner[next], t->other[next], t->slot_offset[next], t->work[WORK_A], t->slots[next],
+                   t->pair_count, t->wall_base, end));
+    TRY(launch_run(sim, slots, "table_slots", end, GROUP, why));
+    TRY(launch_set(sort, "table_sort_slots", why, "Lmmmmmmi", launch, t->owner[next], t->other[next], id, t->slot_offset[next], t->work[WORK_B],
+                   t->slots[next], t->wall_base));
+    return launch_run(sim, sort, "table_sort_slots", sim->count, GROUP, why);
+}
+
+/* Every history component of the old records into the new ones. Where nothing grew the force array holds the old component meanwhile. */
+static status carry_histories(simulation *sim, int64_t old_records, int64_t old_stride, failure *why)
+{
+    contact_table *t = &sim->table;
+    cl_kernel carry = launch_kernel(sim, "table_carry");
+    bool grown = old_stride != t->record_stride;
+    for (int f = 0; f < sim->field_count; f++) {
+        stored_field *stored = &sim->field[f];
+        const field *field = stored->field;
+        if (field->extent != PER_RECORD)
+            continue;
+        uint64_t old_bytes = 8 * (uint64_t)(old_stride * field->components);
+        cl_mem old = stored->mem;
+        if (field->role != FIELD_HISTORY) {
+            if (grown)
+                TRY(grow(sim, &stored->mem, old_bytes, field_bytes(sim, field), why));
+            continue;
+        }
+        if (grown)
+            TRY(store_buffer(sim, &stored->mem, field_bytes(sim, field), field->name, why));
+        cl_mem scratch = store_find(sim, "force")->mem;
+        for (int c = 0; c < field->components; c++) {
+            if (!grown)
+                TRY(store_copy(sim, old, scratch, 8 * (uint64_t)(c * old_stride), 0, 8 * (uint64_t)old_records, why));
+            TRY(launch_set(carry, "table_carry", why, "mmmllii", t->match, grown ? old : scratch, stored->mem,
+                           (clast_i64)(grown ? c * old_stride : 0), (clast_i64)(c * t->record_stride), t->record_count, field->components > 1));
+            TRY(launch_run(sim, carry, "table_carry", t->record_count, GROUP, why));
+        }
+        if (grown)
+            store_release(sim, &old, old_bytes);
+    }
+    return STATUS_OK;
+}
+
+static status match_records(simulation *sim, int old_wall_base, failure *why)
+{
+    contact_table *t = &sim->table;
+    int next = 1 - t->now, end = t->record_count;
+    if (!t->built)
+        return store_fill(sim, t->match, 4 * (uint64_t)end, why);
+    cl_kernel match = launch_kernel(sim, "table_match");
+    TRY(launch_set(match, "table_match", why, "mmmmmmmmiiii", t->owner[next], t->other[next], t->work[WORK_C], t->owner[t->now], t->other[t->now],
+                   t->slot_offset[t->now], t->slots[t->now], t->match, t->pair_count, t->wall_base, t->wall_base + t->wall_record_count,
+                   old_wall_base));
+    TRY(launch_run(sim, match, "table_match", t->wall_base + t->wall_record_count, GROUP, why));
+    int rest = t->record_count - (t->wall_base + t->wall_record_count);
+    return rest > 0 ? store_clear_ints(sim, t->match, t->wall_base + t->wall_record_count, rest, why) : STATUS_OK;
+}
+
+/* The generation left behind is brought to the size of the other one once it is free. */
+static status fit_spare_generation(simulation *sim, int64_t old_capacity, failure *why)
+{
+    contact_table *t = &sim->table;
+    if (old_capacity == t->record_capacity)
+        return STATUS_OK;
+    int spare = 1 - t->now;
+    TRY(grow(sim, &t->owner[spare], 4 * (uint64_t)old_capacity, 4 * (uint64_t)t->record_capacity, why));
+    return grow(sim, &t->other[spare], 4 * (uint64_t)old_capacity, 4 * (uint64_t)t->record_capacity, why);
+}
+
+static status finish(simulation *sim, failure *why)
+{
+    contact_table *t = &sim->table;
+    t->now = 1 - t->now;
+    t->built = true;
+    sim->particles_stale = true;
+    sim->built_time = sim->time;
+    sim->rebuild_step = sim->step;
+    TRY(store_copy(sim, store_find(sim, "position")->mem, sim->built_position, 0, 0, field_bytes(sim, &field_position), why));
+    TRY(simulation_choose_drift(sim, why));
+    return launch_bind_stages(sim, why);
+}
+
+status table_build(simulation *sim, bool drop_outside, failure *why)
+{
+    contact_table *t = &sim->table;
+    double start = seconds();
+    int old_wall_base = t->wall_base;
+    int64_t old_records = t->record_count, old_stride = t->record_stride, old_capacity = t->record_capacity;
+    set_grid(sim, drop_outside);
+    TRY(fit_cells(sim, why));
+    TRY(store_write(sim, t->grid, 0, sizeof t->grid_host, &t->grid_host, why));
+    clast_launch launch = launch_values(sim);
+    TRY(sort_grains(sim, &launch, why));
+    launch.particle_count = (clast_i32)sim->count;
+    TRY(permute_fields(sim, &launch, why));
+    TRY(count_records(sim, &launch, why));
+    TRY(fit_records(sim, old_stride, why));
+    TRY(fill_records(sim, &launch, why));
+    TRY(fill_slots(sim, &launch, why));
+    TRY(match_records(sim, old_wall_base, why));
+    TRY(carry_histories(sim, old_records, old_stride, why));
+    TRY(finish(sim, why));
+    TRY(fit_spare_generation(sim, old_capacity, why));
+    sim->rebuilds++;
+    sim->rebuild_seconds += seconds() - start;
+    return STATUS_OK;
+}
+
+uint64_t table_bytes(const simulation *sim)
+{
+    const contact_table *t = &sim->table;
+    return 4 * (uint64_t)(5 * (sim->stride + 1) + 5 * t->record_capacity + t->slots_held[0] + t->slots_held[1] + 2 * t->cell_capacity);
+}
