@@ -8,10 +8,20 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-enum { BUNDLE_FORMAT = 1 };
-static const char format_name[] = "clast_bundle_format";
+/* The first bytes of the file, before HDF5's own. A damaged file must never reach libhdf5, which can crash on one, and a wrong bit in the
+ * values would pass unseen: so everything behind the seal is hashed. */
+typedef struct seal {
+    char name[16];
+    int32_t format, unused;
+    int64_t size; /* of the whole file */
+    uint64_t hash;
+} seal;
+
+enum { BUNDLE_FORMAT = 1, SEAL_BLOCK = 512 };
+static const char seal_name[16] = "clast checkpoint";
 
 void bundle_init(bundle *b)
 {
@@ -185,6 +195,68 @@ static bool write_entry(hid_t file, const bundle_entry *entry)
     return done;
 }
 
+/* Hashes the bytes from SEAL_BLOCK up to `size`. False when they cannot be read. */
+static bool hash_file(int descriptor, int64_t size, uint64_t *hash)
+{
+    enum { WORDS = 1 << 15 };
+    uint64_t *words = malloc(WORDS * sizeof *words), h = (uint64_t)size;
+    bool done = words != NULL;
+    for (int64_t at = SEAL_BLOCK; at < size && done;) {
+        size_t want = size - at < (int64_t)(WORDS * sizeof *words) ? (size_t)(size - at) : WORDS * sizeof *words, have = 0;
+        while (have < want && done) {
+            ssize_t got = pread(descriptor, (char *)words + have, want - have, at + (int64_t)have);
+            done = got > 0 || (got < 0 && errno == EINTR);
+            have += got > 0 ? (size_t)got : 0;
+        }
+        memset((char *)words + have, 0, (8 - have % 8) % 8);
+        for (size_t k = 0; k < (have + 7) / 8; k++) {
+            h = (h ^ words[k]) * UINT64_C(0x9e3779b97f4a7c15); /* odd, bits well mixed: 2^64 over the golden ratio */
+            h ^= h >> 32;
+        }
+        at += (int64_t)want;
+    }
+    free(words);
+    *hash = h;
+    return done;
+}
+
+/* The file is whole only once its seal is on the disk. */
+static status write_seal(const char *path, failure *why)
+{
+    int descriptor = open(path, O_RDWR | O_CLOEXEC);
+    if (descriptor < 0)
+        return fail(why, STATUS_ERROR, "%s: cannot be sealed: %s", path, strerror(errno));
+    struct stat about;
+    seal mark = {.format = BUNDLE_FORMAT};
+    memcpy(mark.name, seal_name, sizeof mark.name);
+    bool done = fstat(descriptor, &about) == 0 && hash_file(descriptor, about.st_size, &mark.hash);
+    mark.size = about.st_size;
+    done = done && pwrite(descriptor, &mark, sizeof mark, 0) == (ssize_t)sizeof mark && fsync(descriptor) == 0;
+    status result = done ? STATUS_OK : fail(why, STATUS_ERROR, "%s: cannot be sealed: %s", path, strerror(errno));
+    close(descriptor);
+    return result;
+}
+
+static status check_seal(int descriptor, const char *path, failure *why)
+{
+    struct stat about;
+    seal mark;
+    uint64_t hash;
+    if (fstat(descriptor, &about) != 0 || !S_ISREG(about.st_mode))
+        return fail(why, STATUS_BAD_INPUT, "%s: not a regular file", path);
+    if (pread(descriptor, &mark, sizeof mark, 0) != (ssize_t)sizeof mark || memcmp(mark.name, seal_name, sizeof mark.name) != 0)
+        return fail(why, STATUS_BAD_INPUT, "%s: not a Clast checkpoint%s", path,
+                    hdf5_signature(descriptor) ? " (an HDF5 file of another kind, perhaps the results)" : "");
+    if (mark.format != BUNDLE_FORMAT)
+        return fail(why, STATUS_BAD_INPUT, "%s: a checkpoint of format %d; this version of Clast reads format %d", path, mark.format,
+                    BUNDLE_FORMAT);
+    if (mark.size != about.st_size)
+        return fail(why, STATUS_BAD_INPUT, "%s: damaged: it has %" PRId64 " bytes of %" PRId64, path, (int64_t)about.st_size, mark.size);
+    if (!hash_file(descriptor, mark.size, &hash) || hash != mark.hash)
+        return fail(why, STATUS_BAD_INPUT, "%s: damaged: its bytes are not those that were written", path);
+    return STATUS_OK;
+}
+
 /* A rename lasts through a power cut only once its folder is on disk. Not every file system can do it, so nobody is told. */
 static void sync_folder(const char *path)
 {
@@ -206,13 +278,15 @@ status bundle_write(const bundle *b, const char *path, failure *why)
         return fail(why, STATUS_BAD_INPUT, "%s: the path is too long", path);
     commit_file *file;
     unlink(temporary); /* what an interrupted write left */
-    if (commit_file_create(temporary, &file, why) != STATUS_OK)
+    if (commit_file_create(temporary, SEAL_BLOCK, &file, why) != STATUS_OK)
         return STATUS_ERROR; /* in the middle of a run nothing that the user gave is at fault */
-    bool done = write_int_attribute(commit_file_id(file), format_name, BUNDLE_FORMAT);
+    bool done = true;
     for (int k = 0; k < b->count && done; k++)
         done = write_entry(commit_file_id(file), &b->entry[k]);
     status result = done ? commit_file_flush(file, true, why) : commit_file_failed(file, "written", why);
     commit_file_close(file);
+    if (result == STATUS_OK)
+        result = write_seal(temporary, why);
     if (result == STATUS_OK && rename(temporary, path) != 0)
         result = fail(why, STATUS_ERROR, "%s: cannot be put in place: %s", path, strerror(errno));
     if (result != STATUS_OK)
@@ -279,22 +353,24 @@ static herr_t visit(hid_t group, const char *name, const H5L_info_t *about, void
 status bundle_read(const char *path, bundle *out, failure *why)
 {
     bundle_init(out);
-    hid_t file;
-    TRY(hdf5_open_read(path, "a Clast checkpoint", &file, why));
-    int format = 0;
-    status result = STATUS_OK;
-    if (!read_int_attribute(file, format_name, &format))
-        result = fail(why, STATUS_BAD_INPUT, "%s: not a Clast checkpoint (an HDF5 file of another kind)", path);
-    else if (format != BUNDLE_FORMAT)
-        result = fail(why, STATUS_BAD_INPUT, "%s: a checkpoint of format %d; this version of Clast reads format %d", path, format, BUNDLE_FORMAT);
-    if (result == STATUS_OK) {
-        reading r = {out, path, STATUS_OK, why};
-        if (H5Literate(file, H5_INDEX_NAME, H5_ITER_INC, NULL, visit, &r) < 0 && r.result == STATUS_OK)
-            r.result = fail(why, STATUS_BAD_INPUT, "%s: damaged: its entries cannot be listed", path);
-        result = r.result;
+    hdf5_quiet();
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0)
+        return fail(why, STATUS_BAD_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+    status result = check_seal(descriptor, path, why);
+    close(descriptor);
+    TRY(result);
+    hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (file < 0) {
+        char reason[256];
+        hdf5_reason(reason, sizeof reason);
+        return fail(why, STATUS_BAD_INPUT, "%s: cannot be read: %s", path, reason);
     }
+    reading r = {out, path, STATUS_OK, why};
+    if (H5Literate(file, H5_INDEX_NAME, H5_ITER_INC, NULL, visit, &r) < 0 && r.result == STATUS_OK)
+        r.result = fail(why, STATUS_BAD_INPUT, "%s: damaged: its entries cannot be listed", path);
     H5Fclose(file);
-    if (result != STATUS_OK)
+    if (r.result != STATUS_OK)
         bundle_free(out);
-    return result;
+    return r.result;
 }

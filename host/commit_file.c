@@ -334,7 +334,19 @@ static status take(commit_file *file, bool create, failure *why)
     return STATUS_OK;
 }
 
-static status begin(const char *path, bool create, commit_file **out, failure *why)
+/* The driver ignores the flags and uses the descriptor: the name only serves libhdf5's own bookkeeping. */
+static hid_t open_hdf5(const char *path, bool create, size_t user_block, hid_t access)
+{
+    if (!create)
+        return H5Fopen(path, H5F_ACC_RDWR, access);
+    hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+    H5Pset_userblock(creation, user_block);
+    hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, creation, access);
+    H5Pclose(creation);
+    return file;
+}
+
+static status begin(const char *path, bool create, size_t user_block, commit_file **out, failure *why)
 {
     hdf5_quiet();
     *out = NULL;
@@ -345,8 +357,7 @@ static status begin(const char *path, bool create, commit_file **out, failure *w
     status result = take(file, create, why);
     if (result == STATUS_OK) {
         hid_t access = access_list(file);
-        /* The driver ignores the flags and uses the descriptor: the name only serves libhdf5's own bookkeeping. */
-        file->file = create ? H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access) : H5Fopen(path, H5F_ACC_RDWR, access);
+        file->file = open_hdf5(path, create, user_block, access);
         if (file->file < 0) {
             char reason[256];
             hdf5_reason(reason, sizeof reason);
@@ -364,14 +375,14 @@ static status begin(const char *path, bool create, commit_file **out, failure *w
     return STATUS_OK;
 }
 
-status commit_file_create(const char *path, commit_file **out, failure *why)
+status commit_file_create(const char *path, size_t user_block, commit_file **out, failure *why)
 {
-    return begin(path, true, out, why);
+    return begin(path, true, user_block, out, why);
 }
 
 status commit_file_open(const char *path, commit_file **out, failure *why)
 {
-    return begin(path, false, out, why);
+    return begin(path, false, 0, out, why);
 }
 
 hid_t commit_file_id(const commit_file *file)

@@ -11,8 +11,9 @@
 
 typedef struct commit_file commit_file;
 
-/* Replaces a file of that name, but only an HDF5 file or an empty one. Fails with STATUS_BAD_INPUT. */
-status commit_file_create(const char *path, commit_file **out, failure *why);
+/* Replaces a file of that name, but only an HDF5 file or an empty one. The first `user_block` bytes (0, or a power of two from 512 on) are
+ * left to the caller. Fails with STATUS_BAD_INPUT. */
+status commit_file_create(const char *path, size_t user_block, commit_file **out, failure *why);
 /* Opens for reading and writing. */
 status commit_file_open(const char *path, commit_file **out, failure *why);
 hid_t commit_file_id(const commit_file *file);

@@ -127,7 +127,7 @@ status results_create(const char *path, const results_spec *spec, results **out,
     if (!r)
         return fail(why, STATUS_ERROR, "%s: out of memory", path);
     status result;
-    TRY_GOTO(result, failed, commit_file_create(path, &r->file, why));
+    TRY_GOTO(result, failed, commit_file_create(path, 0, &r->file, why));
     result = enough_space(r, why);
     if (result == STATUS_OK && !results_layout_create(r, spec))
         result = commit_file_failed(r->file, "created", why);
