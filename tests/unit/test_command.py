@@ -1,0 +1,168 @@
+"""The command line: help, messages and exit codes."""
+import json
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+
+CLAST = os.environ["CLAST"]
+COMMANDS = ["run", "resume", "check", "devices", "bench", "study", "reference"]
+OK, ERROR, BAD_INPUT, DEVICE = 0, 1, 2, 3
+
+SCENE = """
+title: One grain
+gravity_m_s2: [0, 0, -9.81]
+effects: [{slot: normal, law: hertz}]
+materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3}]
+interactions: [{between: default, restitution: 0.5, friction_static: 0.5}]
+particles:
+  - {name: one, material: glass, generator: list, items: [{position_m: [0, 0, 0.01], radius_m: 1.0e-3}]}
+walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]
+stages: [{name: fall, until: {time_s: 0.001}}]
+"""
+
+
+def clast(*arguments, **environment):
+    return subprocess.run([CLAST, *arguments], capture_output=True, text=True, env={**os.environ, **environment}, timeout=300)
+
+
+class Command(unittest.TestCase):
+    def refused(self, arguments, *texts, code=BAD_INPUT, **environment):
+        done = clast(*arguments, **environment)
+        self.assertEqual(done.returncode, code, f"{arguments}: {done.stderr}")
+        self.assertEqual(done.stdout, "")
+        for text in texts:
+            self.assertIn(text, done.stderr)
+        return done.stderr
+
+    def test_help(self):
+        done = clast("--help")
+        self.assertEqual(done.returncode, OK)
+        for command in COMMANDS:
+            self.assertRegex(done.stdout, rf"(?m)^  {command} +\w")
+            own = clast(command, "--help")
+            self.assertEqual(own.returncode, OK)
+            self.assertIn(f"Usage: clast {command}", own.stdout)
+            self.assertEqual(own.stderr, "")
+
+    def test_version(self):
+        for arguments in (["--version"], ["run", "--version"]):
+            done = clast(*arguments)
+            self.assertEqual(done.returncode, OK)
+            self.assertRegex(done.stdout, r"^clast \d+\.\d+\.\d+\n$")
+
+    def test_unknown_command(self):
+        self.refused([], "clast --help")
+        self.refused(["chek", "scene.yaml"], "`chek`", "did you mean `check`?")
+        self.refused(["device"], "did you mean `devices`?")
+        self.refused(["xyzzy"], "`xyzzy`", "clast --help")
+        self.refused(["--xyzzy"], "--xyzzy")
+
+    def test_bad_options(self):
+        one_line = [
+            (["run"], "SCENE.yaml"),
+            (["run", "a.yaml"], "--out"),
+            (["run", "a.yaml", "b.yaml", "--out", "c.h5"], "`b.yaml`"),
+            (["run", "a.yaml", "--out", "c.h5", "--precision", "mixed"], "not in this version"),
+            (["run", "a.yaml", "--out", "c.h5", "--precision", "half"], "`half`"),
+            (["run", "a.yaml", "--out", "c", "--sweep", "seed=1,2"], "not in this version"),
+            (["run", "a.yaml", "--out", "c.h5", "--set", "seed"], "PATH=VALUE"),
+            (["resume"], "CHECKPOINT.h5"),
+            (["check"], "SCENE.yaml"),
+            (["bench"], "`bed`"),
+            (["bench", "bad"], "`bad`"),
+            (["bench", "kernels"], "not in this version"),
+            (["bench", "bed", "--particles", "many"], "`many`"),
+            (["bench", "bed", "--particles", "0"], "`0`"),
+            (["bench", "bed", "--particles", "1.5"], "`1.5`"),
+            (["bench", "bed", "--steps", "1e99"], "`1e99`"),
+            (["study", "accuracy", "a.yaml"], "not in this version"),
+        ]
+        for arguments, text in one_line:
+            with self.subTest(arguments):
+                self.assertEqual(len(self.refused(arguments, text).splitlines()), 1)
+        for command in COMMANDS:
+            self.refused([command, "--xyzzy"], f"clast {command}: ", "--xyzzy")
+        self.refused(["run", "--out"], "--out")
+        self.refused(["devices", "extra"], "clast devices: ")
+
+    def test_devices(self):
+        done = clast("devices", "--json")
+        if done.returncode == DEVICE:
+            self.skipTest(done.stderr)
+        self.assertEqual(done.returncode, OK)
+        devices = json.loads(done.stdout)
+        self.assertGreater(len(devices), 0)
+        for index, device in enumerate(devices):
+            self.assertEqual(device["index"], index)
+            self.assertIn(device["type"], ("cpu", "gpu", "accelerator"))
+            for key in ("memory_bytes", "usable_bytes", "largest_buffer_bytes", "compute_units"):
+                self.assertGreater(device[key], 0)
+        self.assertLessEqual(sum(device["used"] for device in devices), 1)
+        self.assertEqual(any(device["used"] for device in devices), any(device["fp64"] for device in devices))
+        table = clast("devices").stdout
+        for device in devices:
+            self.assertRegex(table, rf"(?m)^[* ] {device['index']} +{re.escape(device['name'])} ")
+
+    def test_no_platform(self):
+        """Both kinds of loader are pointed at a folder without drivers."""
+        with tempfile.TemporaryDirectory() as empty:
+            nowhere = {"OCL_ICD_VENDORS": empty, "OPENCL_VENDOR_PATH": empty, "OCL_ICD_FILENAMES": ""}
+            self.refused(["devices"], "pocl-opencl-icd", code=DEVICE, **nowhere)
+            self.refused(["devices", "--json"], "pocl-opencl-icd", code=DEVICE, **nowhere)
+
+    def test_reference(self):
+        done = clast("reference")
+        self.assertEqual(done.returncode, OK)
+        for key in ("youngs_modulus_pa", "gravity_m_s2", "restitution"):
+            self.assertIn(key, done.stdout)
+
+    def test_full_pipe(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([CLAST, "reference"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=300)
+        self.assertEqual(done.returncode, ERROR)
+        self.assertIn("standard output", done.stderr)
+
+
+class SceneFile(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.scene = os.path.join(self.folder.name, "scene.yaml")
+        self.result = os.path.join(self.folder.name, "result.h5")
+        with open(self.scene, "w") as file:
+            file.write(SCENE)
+
+    def refused(self, *arguments, code=BAD_INPUT):
+        done = clast(*arguments)
+        self.assertEqual(done.returncode, code, f"{arguments}: {done.stderr}")
+        return done.stderr
+
+    def test_missing_scene(self):
+        missing = os.path.join(self.folder.name, "missing.yaml")
+        self.assertIn(missing, self.refused("check", missing))
+        self.assertIn(missing, self.refused("run", missing, "--out", self.result))
+        self.assertFalse(os.path.exists(self.result))
+
+    def test_bad_scene_begins_with_the_place(self):
+        with open(self.scene, "a") as file:
+            file.write("gravty: 1\n")
+        line = SCENE.count("\n") + 1
+        for arguments in (["check", self.scene], ["run", self.scene, "--out", self.result]):
+            message = self.refused(*arguments)
+            self.assertTrue(message.startswith(f"{self.scene}:{line}:1: "), message)
+        self.assertTrue(self.refused("check", self.scene, "--set", "seed=-1").startswith("clast: --set seed=-1: "))
+
+    def test_bad_device(self):
+        self.assertIn("`no such`", self.refused("check", self.scene, "--device", "no such", code=DEVICE))
+
+    def test_check(self):
+        done = clast("check", self.scene)
+        self.assertEqual(done.returncode, OK, done.stderr)
+        self.assertIn("hertz", done.stdout)
+        self.assertIn("friction_static", done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
