@@ -233,6 +233,43 @@ status observe_contacts(simulation *sim, bool walls_only, live_contact **out, in
     return result;
 }
 
+static void add_totals(const simulation *sim, const record_arrays *r, double *const own[3], double *const opposite[3], double *out)
+{
+    for (int64_t k = 0; k < sim->table.record_count; k++) {
+        if (!(r->overlap[k] > 0.0))
+            continue;
+        for (int c = 0; c < 3; c++) {
+            out[3 * (int64_t)r->id[r->owner[k]] + c] += own[c][k];
+            if (k < sim->table.wall_base)
+                out[3 * (int64_t)r->id[r->other[k]] + c] += opposite ? opposite[c][k] : -own[c][k];
+        }
+    }
+}
+
+status observe_totals(simulation *sim, bool torque, double **out, failure *why)
+{
+    record_arrays r;
+    double *own[3] = {NULL, NULL, NULL};
+    status result = read_records(sim, &r, why);
+    bool turns = torque && r.torque[0];
+    *out = malloc(sizeof **out * (size_t)(3 * sim->id_count + 1));
+    if (result == STATUS_OK && !*out)
+        result = fail(why, STATUS_ERROR, "out of memory");
+    for (int c = 0; turns && c < 3 && result == STATUS_OK; c++)
+        result = read_component(sim, store_find(sim, "torque")->mem, c, &own[c], why);
+    for (int64_t n = 0; n < 3 * sim->id_count && result == STATUS_OK; n++)
+        (*out)[n] = NAN;
+    for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++)
+        for (int c = 0; c < 3; c++)
+            (*out)[3 * (int64_t)r.id[i] + c] = 0.0;
+    if (result == STATUS_OK && (!torque || turns))
+        add_totals(sim, &r, turns ? own : r.force, turns ? r.torque : NULL, *out);
+    for (int c = 0; c < 3; c++)
+        free(own[c]);
+    free_records(&r);
+    return result;
+}
+
 status observe_virial(simulation *sim, double *stress, failure *why)
 {
     record_arrays r;

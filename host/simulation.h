@@ -176,6 +176,8 @@ status observe_particle_sums(simulation *sim, particle_sums *out, failure *why);
 status observe_contact_sums(simulation *sim, contact_sums *out, failure *why);
 /* Live contacts in the order of ids; forces as they stand. walls_only leaves the pairs out. Caller frees. */
 status observe_contacts(simulation *sim, bool walls_only, live_contact **out, int64_t *count, failure *why);
+/* Sum of the contacts' forces (or torques) on every grain, [id_count][3]; NAN where the grain has left. Caller frees. */
+status observe_totals(simulation *sim, bool torque, double **out, failure *why);
 /* Volume-averaged stress times volume: sum of f_a l_b over contacts, row-major, J. */
 status observe_virial(simulation *sim, double *stress, failure *why);
 /* Host copy of a particle field in permanent-id order, [id_count][components]; NAN (or -1) where the grain has left. Caller frees. */

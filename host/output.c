@@ -1,0 +1,320 @@
+#include "output.h"
+
+#include "scene_table.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CONSTANT_FIELDS 5
+
+struct output {
+    simulation *sim;
+    results *file;
+    int field_count;
+    results_field *field;
+    int observable_count, value_count;
+    results_observable *observable;
+    char (*wall_name)[160];
+    double *value;
+    bool wants_sums, wants_contacts, wants_stress;
+    double *mass, *radius;
+    int32_t *id, *material, *group;
+};
+
+static const output_name *find_name(const output_name *names, const char *name)
+{
+    for (const output_name *n = names; n->name; n++)
+        if (strcmp(n->name, name) == 0)
+            return n;
+    return NULL;
+}
+
+/* ---- constants of the grains ---- */
+
+static status read_constants(output *o, failure *why)
+{
+    simulation *sim = o->sim;
+    size_t n = (size_t)sim->id_count + 1;
+    double *material = NULL;
+    o->id = malloc(n * sizeof *o->id);
+    o->material = calloc(n, sizeof *o->material);
+    o->group = malloc(n * sizeof *o->group);
+    if (!o->id || !o->material || !o->group)
+        return fail(why, STATUS_ERROR, "out of memory");
+    TRY(observe_field(sim, "mass", &o->mass, why));
+    TRY(observe_field(sim, "radius", &o->radius, why));
+    for (int64_t i = 0; i < sim->id_count; i++) {
+        o->id[i] = (int32_t)i;
+        o->group[i] = sim->group_of_id[i];
+        o->material[i] = sim->scene->group[sim->group_of_id[i]].material;
+    }
+    free(material);
+    return STATUS_OK;
+}
+
+/* ---- what the scene asks for ---- */
+
+static status list_fields(output *o, failure *why)
+{
+    const output_spec *spec = &o->sim->scene->output;
+    const results_field constant[CONSTANT_FIELDS] = {{"id", "", 1, true, true},
+                                                     {"group", "", 1, true, true},
+                                                     {"material", "", 1, true, true},
+                                                     {"mass", "kg", 1, true, false},
+                                                     {"radius", "m", 1, true, false}};
+    o->field = calloc((size_t)spec->field_count + CONSTANT_FIELDS, sizeof *o->field);
+    if (!o->field)
+        return fail(why, STATUS_ERROR, "out of memory");
+    memcpy(o->field, constant, sizeof constant);
+    o->field_count = CONSTANT_FIELDS;
+    for (int f = 0; f < spec->field_count; f++) {
+        const output_name *name = find_name(output_fields, spec->fields[f]);
+        o->field[o->field_count++] = (results_field){name->name, name->unit, name->components, false, false};
+    }
+    return STATUS_OK;
+}
+
+static status list_observables(output *o, failure *why)
+{
+    static const char *const of_contacts[] = {"elastic_energy", "overlap_max", "coordination_number", "contacts"};
+    const scene *scene = o->sim->scene;
+    o->observable = calloc((size_t)(scene->output.observable_count + 2 * scene->wall_count + 1), sizeof *o->observable);
+    o->wall_name = calloc((size_t)(2 * scene->wall_count + 1), sizeof *o->wall_name);
+    if (!o->observable || !o->wall_name)
+        return fail(why, STATUS_ERROR, "out of memory");
+    for (int k = 0; k < scene->output.observable_count; k++) {
+        const output_name *name = find_name(output_observables, scene->output.observables[k]);
+        o->observable[o->observable_count++] = (results_observable){name->name, name->unit, name->components};
+        o->value_count += name->components;
+        o->wants_stress = o->wants_stress || strcmp(name->name, "stress") == 0;
+        for (size_t c = 0; c < sizeof of_contacts / sizeof *of_contacts; c++)
+            o->wants_contacts = o->wants_contacts || strcmp(name->name, of_contacts[c]) == 0;
+    }
+    for (int w = 0; w < scene->wall_count; w++)
+        for (int q = 0; q < 2; q++) {
+            char *name = o->wall_name[2 * w + q];
+            snprintf(name, sizeof o->wall_name[0], "walls/%s/%s", scene->wall[w].name, q ? "torque" : "force");
+            o->observable[o->observable_count++] = (results_observable){name, q ? "N m" : "N", 3};
+            o->value_count += 3;
+        }
+    o->value = calloc((size_t)o->value_count + 1, sizeof *o->value);
+    return o->value ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
+}
+
+status output_open(simulation *sim, const char *path, const char *plan_text, bool continued, output **out, failure *why)
+{
+    output *o = calloc(1, sizeof *o);
+    *out = o;
+    if (!o)
+        return fail(why, STATUS_ERROR, "out of memory");
+    const scene *scene = sim->scene;
+    o->sim = sim;
+    TRY(read_constants(o, why));
+    TRY(list_fields(o, why));
+    TRY(list_observables(o, why));
+    char device[1024];
+    device_describe(&sim->device->info, device, sizeof device);
+    results_spec spec = {.count = sim->id_count,
+                         .field_count = o->field_count,
+                         .field = o->field,
+                         .observable_count = o->observable_count,
+                         .observable = o->observable,
+                         .contacts = scene->output.contacts,
+                         .box_given = scene->domain.given,
+                         .scene_text = scene->text,
+                         .plan_text = plan_text,
+                         .version_text = "clast " CLAST_VERSION,
+                         .device_text = device};
+    for (int c = 0; c < 3; c++) {
+        spec.box_low[c] = scene->domain.low_m[c];
+        spec.box_high[c] = scene->domain.high_m[c];
+        spec.periodic[c] = scene->domain.given && scene->domain.periodic[c];
+    }
+    return continued ? results_continue(path, &spec, sim->step, &o->file, why) : results_create(path, &spec, &o->file, why);
+}
+
+/* ---- frames ---- */
+
+/* Total force or torque on every grain: its contacts, and its weight. */
+static status total_of_contacts(output *o, bool torque, double **out, failure *why)
+{
+    simulation *sim = o->sim;
+    TRY(observe_totals(sim, torque, out, why));
+    for (int64_t i = 0; !torque && i < sim->id_count; i++)
+        for (int c = 0; c < 3; c++)
+            (*out)[3 * i + c] += o->mass[i] * sim->gravity[c];
+    return STATUS_OK;
+}
+
+static status frame_values(output *o, const void **value, double **owned, failure *why)
+{
+    const void *const constant[CONSTANT_FIELDS] = {o->id, o->group, o->material, o->mass, o->radius};
+    memcpy(value, constant, sizeof constant);
+    for (int f = CONSTANT_FIELDS; f < o->field_count; f++) {
+        const char *name = o->field[f].name;
+        bool force = strcmp(name, "force") == 0, torque = strcmp(name, "torque") == 0;
+        TRY(force || torque ? total_of_contacts(o, torque, &owned[f], why) : observe_field(o->sim, name, &owned[f], why));
+        value[f] = owned[f];
+    }
+    return STATUS_OK;
+}
+
+/* Contacts as columns. */
+static status frame_contacts(output *o, results_contacts *c, void **columns, failure *why)
+{
+    live_contact *live = NULL;
+    int64_t count;
+    TRY(observe_contacts(o->sim, false, &live, &count, why));
+    columns[0] = live;
+    size_t n = (size_t)count + 1;
+    int32_t *ids = columns[1] = malloc(3 * n * sizeof *ids);
+    double *reals = columns[2] = malloc(5 * n * sizeof *reals);
+    if (!ids || !reals)
+        return fail(why, STATUS_ERROR, "out of memory");
+    for (int64_t k = 0; k < count; k++) {
+        ids[k] = live[k].i;
+        ids[(int64_t)n + k] = live[k].j;
+        ids[2 * (int64_t)n + k] = live[k].wall;
+        reals[k] = live[k].overlap;
+        reals[(int64_t)n + k] = live[k].area;
+        memcpy(reals + 2 * n + 3 * k, live[k].force, sizeof live[k].force);
+    }
+    *c = (results_contacts){.count = count,
+                            .i = ids,
+                            .j = ids + n,
+                            .wall = ids + 2 * n,
+                            .overlap = reals,
+                            .area = reals + n,
+                            .force = (const double(*)[3])(reals + 2 * n)};
+    return STATUS_OK;
+}
+
+status output_frame(output *o, failure *why)
+{
+    const void **value = calloc((size_t)o->field_count, sizeof *value);
+    double **owned = calloc((size_t)o->field_count, sizeof *owned);
+    void *columns[3] = {NULL, NULL, NULL};
+    results_contacts contacts;
+    bool with_contacts = o->sim->scene->output.contacts;
+    status result = value && owned ? frame_values(o, value, owned, why) : fail(why, STATUS_ERROR, "out of memory");
+    if (result == STATUS_OK && with_contacts)
+        result = frame_contacts(o, &contacts, columns, why);
+    if (result == STATUS_OK)
+        result = results_frame(o->file, o->sim->step, o->sim->time, value, with_contacts ? &contacts : NULL, why);
+    for (int f = 0; owned && f < o->field_count; f++)
+        free(owned[f]);
+    for (int c = 0; c < 3; c++)
+        free(columns[c]);
+    free(owned);
+    free(value);
+    return result;
+}
+
+/* ---- observables ---- */
+
+typedef struct measured {
+    particle_sums grains;
+    contact_sums contacts;
+    double stress[9];
+} measured;
+
+static double bed_volume(const simulation *sim)
+{
+    const domain *d = &sim->scene->domain;
+    double volume = 1.0;
+    for (int c = 0; c < (sim->scene->dimensions == 2 ? 2 : 3); c++)
+        volume *= d->given ? d->high_m[c] - d->low_m[c] : sim->bed_high[c] - sim->bed_low[c] + 2.0 * sim->mean_radius;
+    return sim->scene->dimensions == 2 ? volume * 2.0 * sim->mean_radius : volume;
+}
+
+static int put_observable(const output *o, const char *name, const measured *m, double *to)
+{
+    const simulation *sim = o->sim;
+    const struct {
+        const char *name;
+        double value;
+    } scalars[] = {{"time_step", sim->dt},
+                   {"kinetic_energy", m->grains.kinetic},
+                   {"rotational_energy", m->grains.rotational},
+                   {"elastic_energy", m->contacts.elastic},
+                   {"gravitational_energy", m->grains.gravitational},
+                   {"overlap_max", m->contacts.overlap_max},
+                   {"coordination_number", sim->count ? (double)(m->contacts.contacts + m->contacts.pairs) / (double)sim->count : 0.0},
+                   {"contacts", (double)m->contacts.contacts},
+                   {"rebuilds", (double)sim->rebuilds},
+                   {"left_count", (double)sim->left_count},
+                   {"left_mass", sim->left_mass}};
+    for (size_t s = 0; s < sizeof scalars / sizeof *scalars; s++)
+        if (strcmp(scalars[s].name, name) == 0) {
+            *to = scalars[s].value;
+            return 1;
+        }
+    if (strcmp(name, "stress") == 0) {
+        for (int c = 0; c < 9; c++)
+            to[c] = m->stress[c] / bed_volume(sim);
+        return 9;
+    }
+    memcpy(to, strcmp(name, "momentum") == 0 ? m->grains.momentum : m->grains.angular, 3 * sizeof *to);
+    return 3;
+}
+
+/* Force and torque on every wall: the opposite of what it does to its grains, in the order of their ids. */
+static status put_walls(output *o, double *to, failure *why)
+{
+    live_contact *live = NULL;
+    int64_t count;
+    if (o->sim->scene->wall_count == 0)
+        return STATUS_OK;
+    memset(to, 0, sizeof *to * 6 * (size_t)o->sim->scene->wall_count);
+    status result = observe_contacts(o->sim, true, &live, &count, why);
+    for (int64_t k = 0; k < count && result == STATUS_OK; k++)
+        for (int c = 0; c < 3; c++) {
+            to[6 * live[k].wall + c] -= live[k].force[c];
+            to[6 * live[k].wall + 3 + c] += live[k].torque_wall[c];
+        }
+    free(live);
+    return result;
+}
+
+status output_observe(output *o, failure *why)
+{
+    measured m;
+    memset(&m, 0, sizeof m);
+    if (o->observable_count == 0)
+        return STATUS_OK;
+    TRY(observe_particle_sums(o->sim, &m.grains, why));
+    if (o->wants_contacts)
+        TRY(observe_contact_sums(o->sim, &m.contacts, why));
+    if (o->wants_stress)
+        TRY(observe_virial(o->sim, m.stress, why));
+    double *to = o->value;
+    for (int k = 0; k < o->sim->scene->output.observable_count; k++)
+        to += put_observable(o, o->observable[k].name, &m, to);
+    TRY(put_walls(o, to, why));
+    return results_observe(o->file, o->sim->step, o->sim->time, o->value, why);
+}
+
+status output_text(output *o, const char *name, const char *text, failure *why)
+{
+    return results_text(o->file, name, text, why);
+}
+
+status output_close(output *o, failure *why)
+{
+    if (!o)
+        return STATUS_OK;
+    status result = o->file ? results_close(o->file, why) : STATUS_OK;
+    free(o->field);
+    free(o->observable);
+    free(o->wall_name);
+    free(o->value);
+    free(o->mass);
+    free(o->radius);
+    free(o->id);
+    free(o->material);
+    free(o->group);
+    free(o);
+    return result;
+}
