@@ -34,7 +34,7 @@ static error_t parse_bench(int key, char *argument, struct argp_state *state)
         state->child_inputs[0] = &input->device;
         return 0;
     case 'n':
-        input->options.particles = option_count(state, "--particles", argument, 1, 1000000000);
+        input->options.particles = option_count(state, "--particles", argument, 100, 1000000000);
         return 0;
     case 'S':
         input->options.steps = option_count(state, "--steps", argument, 1, 1000000000000);
@@ -61,9 +61,9 @@ static error_t parse_bench(int key, char *argument, struct argp_state *state)
 
 static const struct argp_option bench_option[] = {
     {"particles", 'n', "N", 0, "Number of particles, as in 1e5 (100000)", 0},
-    {"steps", 'S', "STEPS", 0, "Steps that are timed (1000)", 0},
+    {"steps", 'S', "STEPS", 0, "Steps that are timed, after 200 of warm-up", 0},
     {"rolling", KEY_ROLLING, NULL, 0, "With rolling resistance", 0},
-    {"export", KEY_EXPORT, "FILE.csv", 0, "Write the bed as it is when the timing starts", 0},
+    {"export", KEY_EXPORT, "FILE.csv", 0, "Write the bed as it is before the warm-up", 0},
     {"json", KEY_JSON, "FILE.json", 0, "Write the figures as JSON", 0},
     {0},
 };

@@ -1,0 +1,344 @@
+/* A grain that leans on a frictionless wall is in the very state of one that leans on its own mirror image: half the effective modulus, half
+ * the effective radius and twice the overlap give the same Hertz force. So a part that has settled between frictionless sides, as high as
+ * the whole bed, fits its mirror images without a gap and stays at rest among them. */
+#include "settled_bed.h"
+
+#include "bundle.h"
+#include "cache.h"
+#include "simulation.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define CACHE_VERSION  1 /* counts on when beds of the same name would differ */
+
+#define RADIUS_M       1.0e-3
+#define RADIUS_SPREAD  0.1
+#define SETTLED        0.6 /* volume fraction, as the box is laid out */
+#define POURED         0.5
+#define PART_LEAST     8000
+#define PART_MOST      20000
+#define PART_WANTED    15000.0
+#define GRAVITY        9.81
+#define REST           1.0e-8 /* kinetic energy as a fraction of the sum of m g r */
+#define SETTLE_MAX_S   3.0
+#define SETTLE_CHECK   500  /* steps between looks at the energy */
+#define SETTLE_DAMPING 20.0 /* 1/s */
+
+/* How the bed is put together: columns by rows of mirror images of one part. */
+typedef struct layout {
+    int columns, rows;
+    int64_t part;                        /* grains of the part */
+    int64_t surplus;                     /* grains to leave out, fewer than there are images */
+    double side, part_x, part_y, height; /* m; height before it settles */
+} layout;
+
+/* Sum of volumes of so many grains on average: <r^3> of the uniform distribution. */
+static double solid_volume(double particles)
+{
+    return particles * 4.0 / 3.0 * M_PI * pow(RADIUS_M, 3) * (1.0 + RADIUS_SPREAD * RADIUS_SPREAD);
+}
+
+static double layout_cost(int64_t particles, int columns, int rows, int64_t part)
+{
+    double cost = log((double)columns / rows) + 0.5 * fabs(log((double)part / PART_WANTED));
+    return cost + (part * columns * rows == particles ? 0.0 : 0.2);
+}
+
+static layout choose_layout(int64_t particles)
+{
+    layout best = {.columns = 1, .rows = 1, .part = particles};
+    double least = INFINITY;
+    int most = particles > PART_MOST ? (int)sqrt(2.0 * (double)particles / PART_LEAST) + 1 : 0;
+    for (int columns = 1; columns <= most; columns++)
+        for (int rows = (columns + 1) / 2; rows <= columns; rows++) {
+            int64_t images = (int64_t)columns * rows, part = (particles + images - 1) / images;
+            if (part < PART_LEAST || part > PART_MOST || layout_cost(particles, columns, rows, part) >= least)
+                continue;
+            least = layout_cost(particles, columns, rows, part);
+            best = (layout){.columns = columns, .rows = rows, .part = part};
+        }
+    best.surplus = best.part * best.columns * best.rows - particles;
+    best.side = cbrt(solid_volume((double)particles) / SETTLED);
+    best.part_x = best.side / best.columns;
+    best.part_y = best.side / best.rows;
+    best.height = solid_volume((double)best.part) / (POURED * best.part_x * best.part_y);
+    return best;
+}
+
+/* ---- the scene ---- */
+
+static void print_walls(FILE *out, double x, double y)
+{
+    fprintf(out, "walls:\n"
+                 "  - {name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}\n"
+                 "  - {name: west, shape: plane, point_m: [0, 0, 0], normal: [1, 0, 0]}\n"
+                 "  - {name: south, shape: plane, point_m: [0, 0, 0], normal: [0, 1, 0]}\n");
+    fprintf(out, "  - {name: east, shape: plane, point_m: [%.17g, 0, 0], normal: [-1, 0, 0]}\n", x);
+    fprintf(out, "  - {name: north, shape: plane, point_m: [0, %.17g, 0], normal: [0, -1, 0]}\n", y);
+}
+
+static void print_scene(FILE *out, int64_t particles, double x, double y, double height, bool rolling, bool settling, bool slippery)
+{
+    static const char *const sides[] = {"west", "south", "east", "north"};
+    fprintf(out, "title: Settled bed\ngravity_m_s2: [0, 0, -%g]\neffects:\n", GRAVITY);
+    fprintf(out, "  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin}\n");
+    if (rolling)
+        fprintf(out, "  - {slot: rolling, law: elastic_plastic}\n");
+    if (settling)
+        fprintf(out, "  - {slot: body, law: viscous_damping, coefficient: %g}\n", SETTLE_DAMPING);
+    fprintf(out, "materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3}]\ninteractions:\n");
+    fprintf(out, "  - {between: default, restitution: 0.5, friction_static: 0.5, rolling_friction: 0.01}\n");
+    for (int s = 0; s < 4 && slippery; s++)
+        fprintf(out, "  - {between: [glass, %s], friction_static: 0}\n", sides[s]);
+    fprintf(out, "particles:\n  - {name: bed, material: glass, generator: random, count: %lld,\n", (long long)particles);
+    fprintf(out, "     radius_m: {distribution: uniform, low: %.17g, high: %.17g},\n", RADIUS_M * (1.0 - RADIUS_SPREAD),
+            RADIUS_M * (1.0 + RADIUS_SPREAD));
+    fprintf(out, "     region: {low_m: [0, 0, 0], high_m: [%.17g, %.17g, %.17g]}}\n", x, y, height);
+    print_walls(out, x, y);
+    fprintf(out, "stages: [{name: rest, until: {steps: 1}}]\n");
+}
+
+static status make_scene(int64_t particles, double x, double y, double height, bool rolling, bool settling, bool slippery, scene **out,
+                         failure *why)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    if (!stream)
+        return fail(why, STATUS_ERROR, "out of memory");
+    print_scene(stream, particles, x, y, height, rolling, settling, slippery);
+    fclose(stream);
+    status result = scene_read_text(text, "settled bed", 0, NULL, out, why);
+    free(text);
+    return result;
+}
+
+/* ---- settling ---- */
+
+static status take_field(simulation *sim, const char *name, double (*out)[3], failure *why)
+{
+    double *value = NULL;
+    TRY(observe_field(sim, name, &value, why));
+    memcpy(out, value, sizeof *out * (size_t)sim->id_count);
+    free(value);
+    return STATUS_OK;
+}
+
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* The step follows the limit, which a falling and then loaded bed lowers. */
+static status settle(simulation *sim, failure *why)
+{
+    particle_sums sums;
+    double start = seconds();
+    TRY(simulation_begin_stage(sim, 0, why));
+    do {
+        step_limit limit;
+        TRY(limit_find(sim, &limit, why));
+        simulation_set_step(sim, fmin(2.0e-5, 0.7 * limit.limit_s));
+        TRY(simulation_advance(sim, SETTLE_CHECK, why));
+        TRY(observe_particle_sums(sim, &sums, why));
+        if (!isfinite(sums.kinetic) || sim->count < sim->id_count)
+            return fail(why, STATUS_ERROR, "the bed did not settle: its kinetic energy is %g J after %g s", sums.kinetic, sim->time);
+    } while (sums.kinetic > REST * GRAVITY * sums.weight_radius && sim->time < SETTLE_MAX_S);
+    fprintf(stderr, "%lld grains came to rest after %.2f s, in %.1f s\n", (long long)sim->id_count, sim->time, seconds() - start);
+    return STATUS_OK;
+}
+
+static status pour(const layout *l, device *device, const char *kernels, bed *out, failure *why)
+{
+    scene *poured = NULL;
+    simulation *sim = NULL;
+    bool slippery = l->columns * l->rows > 1;
+    TRY(make_scene(l->part, l->part_x, l->part_y, l->height, false, true, slippery, &poured, why));
+    status result = bed_generate(poured, out, why);
+    if (result == STATUS_OK)
+        result = simulation_create(poured, out, device, kernels, &sim, why);
+    if (result == STATUS_OK)
+        result = settle(sim, why);
+    if (result == STATUS_OK)
+        result = take_field(sim, "position", out->position, why);
+    if (result == STATUS_OK)
+        result = take_field(sim, "velocity", out->velocity, why);
+    if (result == STATUS_OK)
+        result = take_field(sim, "spin", out->spin, why);
+    simulation_free(sim);
+    scene_free(poured);
+    return result;
+}
+
+/* ---- the cache ---- */
+
+static bool cache_file(const layout *l, int64_t particles, char *path, size_t size)
+{
+    char directory[3072];
+    if (!cache_directory(directory, sizeof directory))
+        return false;
+    snprintf(path, size, "%s/settled-bed-%d-%lld-%dx%d.h5", directory, CACHE_VERSION, (long long)particles, l->columns, l->rows);
+    return true;
+}
+
+static status allocate_bed(int64_t count, bed *out, failure *why)
+{
+    size_t n = (size_t)count;
+    *out = (bed){.count = count};
+    out->position = calloc(n, sizeof *out->position);
+    out->velocity = calloc(n, sizeof *out->velocity);
+    out->spin = calloc(n, sizeof *out->spin);
+    out->radius = calloc(n, sizeof *out->radius);
+    out->temperature = calloc(n, sizeof *out->temperature);
+    out->material = calloc(n, sizeof *out->material);
+    out->group = calloc(n, sizeof *out->group);
+    if (out->position && out->velocity && out->spin && out->radius && out->temperature && out->material && out->group)
+        return STATUS_OK;
+    bed_free(out);
+    *out = (bed){0};
+    return fail(why, STATUS_ERROR, "out of memory for %lld particles", (long long)count);
+}
+
+static status take_entry(const bundle *in, const char *path, const char *name, int64_t rows, int64_t columns, void *out, failure *why)
+{
+    const bundle_entry *entry;
+    TRY(bundle_get(in, path, name, BUNDLE_F64, rows, columns, &entry, why));
+    memcpy(out, entry->data, sizeof(double) * (size_t)(rows * columns));
+    return STATUS_OK;
+}
+
+/* False where there is no such file, or it is damaged: then it is made anew. */
+static bool cache_load(const char *path, int64_t count, bed *out)
+{
+    bundle in;
+    failure why;
+    if (bundle_read(path, &in, &why) != STATUS_OK)
+        return false;
+    status result = allocate_bed(count, out, &why);
+    if (result == STATUS_OK)
+        result = take_entry(&in, path, "position", count, 3, out->position, &why);
+    if (result == STATUS_OK)
+        result = take_entry(&in, path, "velocity", count, 3, out->velocity, &why);
+    if (result == STATUS_OK)
+        result = take_entry(&in, path, "spin", count, 3, out->spin, &why);
+    if (result == STATUS_OK)
+        result = take_entry(&in, path, "radius", count, 1, out->radius, &why);
+    bundle_free(&in);
+    if (result != STATUS_OK)
+        bed_free(out);
+    return result == STATUS_OK;
+}
+
+/* A cache that cannot be written is no error: the next run settles the bed again. */
+static void cache_store(const char *path, const bed *of)
+{
+    bundle out;
+    failure why;
+    bundle_init(&out);
+    bundle_add(&out, "position", BUNDLE_F64, of->count, 3, of->position);
+    bundle_add(&out, "velocity", BUNDLE_F64, of->count, 3, of->velocity);
+    bundle_add(&out, "spin", BUNDLE_F64, of->count, 3, of->spin);
+    bundle_add(&out, "radius", BUNDLE_F64, of->count, 1, of->radius);
+    if (bundle_write(&out, path, &why) != STATUS_OK)
+        fprintf(stderr, "the bed is not kept for the next time: %s\n", why.text);
+    bundle_free(&out);
+}
+
+static status get_part(const layout *l, int64_t particles, device *device, const char *kernels, bed *out, failure *why)
+{
+    char path[4096];
+    bool cached = cache_file(l, particles, path, sizeof path);
+    *out = (bed){0};
+    if (cached && cache_load(path, l->part, out))
+        return STATUS_OK;
+    fprintf(stderr, "settling %lld grains, once for all later runs ...\n", (long long)l->part);
+    status result = pour(l, device, kernels, out, why);
+    if (result == STATUS_OK && cached)
+        cache_store(path, out);
+    if (result != STATUS_OK)
+        bed_free(out);
+    return result;
+}
+
+/* ---- mirror images ---- */
+
+static int64_t highest(const bed *b)
+{
+    int64_t top = 0;
+    for (int64_t i = 1; i < b->count; i++)
+        if (b->position[i][2] > b->position[top][2])
+            top = i;
+    return top;
+}
+
+/* Grain i of the part, seen in the given image. Spins are axial: a mirror across x keeps their x component and turns the others. */
+static void place_image(const layout *l, const bed *part, int64_t i, int column, int row, bed *out, int64_t to)
+{
+    const double *x = part->position[i], *v = part->velocity[i], *w = part->spin[i];
+    double mx = column % 2 ? -1.0 : 1.0, my = row % 2 ? -1.0 : 1.0;
+    out->position[to][0] = l->part_x * (column + column % 2) + mx * x[0];
+    out->position[to][1] = l->part_y * (row + row % 2) + my * x[1];
+    out->position[to][2] = x[2];
+    out->velocity[to][0] = mx * v[0];
+    out->velocity[to][1] = my * v[1];
+    out->velocity[to][2] = v[2];
+    out->spin[to][0] = my * w[0];
+    out->spin[to][1] = mx * w[1];
+    out->spin[to][2] = mx * my * w[2];
+    out->radius[to] = part->radius[i];
+    out->temperature[to] = NAN;
+}
+
+/* The surplus is left out from the top, one grain an image. */
+static status assemble(const layout *l, const bed *part, int64_t particles, bed *out, failure *why)
+{
+    TRY(allocate_bed(particles, out, why));
+    int64_t top = highest(part), to = 0;
+    for (int row = 0; row < l->rows; row++)
+        for (int column = 0; column < l->columns; column++)
+            for (int64_t i = 0; i < part->count; i++)
+                if (i != top || row * l->columns + column >= l->surplus)
+                    place_image(l, part, i, column, row, out, to++);
+    for (int c = 0; c < 3; c++) {
+        out->low[c] = INFINITY;
+        out->high[c] = -INFINITY;
+    }
+    for (int64_t i = 0; i < out->count; i++)
+        for (int c = 0; c < 3; c++) {
+            out->low[c] = fmin(out->low[c], out->position[i][c]);
+            out->high[c] = fmax(out->high[c], out->position[i][c]);
+        }
+    return STATUS_OK;
+}
+
+status settled_bed_make(int64_t particles, bool rolling, device *device, const char *kernels, settled_bed *out, failure *why)
+{
+    *out = (settled_bed){0};
+    if (particles < SETTLED_BED_LEAST || particles > INT32_MAX)
+        return fail(why, STATUS_BAD_INPUT, "the bed can have %d to %d particles, not %lld", SETTLED_BED_LEAST, INT32_MAX,
+                    (long long)particles);
+    layout l = choose_layout(particles);
+    bed part;
+    TRY(get_part(&l, particles, device, kernels, &part, why));
+    status result = assemble(&l, &part, particles, &out->bed, why);
+    bed_free(&part);
+    if (result == STATUS_OK)
+        result = make_scene(particles, l.side, l.side, l.height, rolling, false, false, &out->scene, why);
+    out->side_m = l.side;
+    if (result != STATUS_OK)
+        settled_bed_free(out);
+    return result;
+}
+
+void settled_bed_free(settled_bed *b)
+{
+    scene_free(b->scene);
+    bed_free(&b->bed);
+    *b = (settled_bed){0};
+}
