@@ -8,9 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* argp looks for this name and adds --version to every command. */
-const char *argp_program_version = "clast " CLAST_VERSION;
-
 static const command commands[] = {
     {"run", "run a scene and write its results", command_run},
     {"resume", "go on with a run from its checkpoint", command_resume},
@@ -116,6 +113,7 @@ int main(int argc, char **argv)
 {
     failure why = {.text = ""};
     argp_err_exit_status = STATUS_BAD_INPUT;
+    argp_program_version = "clast " CLAST_VERSION; /* gives every command --version */
     status result = dispatch(argc, argv, &why);
     if (result != STATUS_OK && why.text[0])
         fprintf(stderr, "%s%s\n", begins_with_place(why.text) ? "" : "clast: ", why.text);

@@ -74,7 +74,7 @@ class Command(unittest.TestCase):
             (["bench", "bad"], "`bad`"),
             (["bench", "kernels"], "not in this version"),
             (["bench", "bed", "--particles", "many"], "`many`"),
-            (["bench", "bed", "--particles", "0"], "`0`"),
+            (["bench", "bed", "--particles", "99"], "from 100 to"),
             (["bench", "bed", "--particles", "1.5"], "`1.5`"),
             (["bench", "bed", "--steps", "1e99"], "`1e99`"),
             (["study", "accuracy", "a.yaml"], "not in this version"),
@@ -146,13 +146,13 @@ class SceneFile(unittest.TestCase):
         self.assertFalse(os.path.exists(self.result))
 
     def test_bad_scene_begins_with_the_place(self):
+        self.assertTrue(self.refused("check", self.scene, "--set", "seed=-1").startswith("clast: --set seed=-1: "))
         with open(self.scene, "a") as file:
             file.write("gravty: 1\n")
         line = SCENE.count("\n") + 1
         for arguments in (["check", self.scene], ["run", self.scene, "--out", self.result]):
             message = self.refused(*arguments)
             self.assertTrue(message.startswith(f"{self.scene}:{line}:1: "), message)
-        self.assertTrue(self.refused("check", self.scene, "--set", "seed=-1").startswith("clast: --set seed=-1: "))
 
     def test_bad_device(self):
         self.assertIn("`no such`", self.refused("check", self.scene, "--device", "no such", code=DEVICE))
@@ -160,8 +160,52 @@ class SceneFile(unittest.TestCase):
     def test_check(self):
         done = clast("check", self.scene)
         self.assertEqual(done.returncode, OK, done.stderr)
-        self.assertIn("hertz", done.stdout)
-        self.assertIn("friction_static", done.stdout)
+        for text in ("hertz", "interactions[default].friction_static", "limit", "recommended", "bytes", "pair_stage", "particle_stage"):
+            self.assertIn(text, done.stdout)
+
+    def plan(self, *arguments):
+        done = clast("check", self.scene, "--json", *arguments)
+        self.assertEqual(done.returncode, OK, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_plan(self):
+        plan = self.plan("--probe")
+        self.assertEqual(plan["particles"], 1)
+        self.assertEqual(plan["unused"], ["interactions[default].friction_static"])
+        stage = plan["stages"][0]
+        self.assertEqual(stage["laws"]["normal"], "hertz")
+        self.assertNotIn("tangential", stage["laws"])
+        self.assertLess(stage["recommended_s"], stage["limit_s"])
+        self.assertEqual(stage["step_s"], stage["recommended_s"])
+        self.assertGreaterEqual(stage["steps"] * stage["step_s"], 0.001 * (1 - 1e-9))
+        memory = plan["memory"]
+        parts = sum(field["bytes"] for field in memory["fields"]) + memory["contact_table_bytes"] + memory["other_bytes"]
+        self.assertEqual(parts, memory["bytes"])
+        self.assertLess(memory["bytes"], memory["usable_bytes"])
+        for stage_arguments in (plan["pair_stage_arguments"], plan["particle_stage_arguments"]):
+            self.assertIn("position", stage_arguments["names"])
+            self.assertLess(stage_arguments["bytes"], stage_arguments["bytes_max"])
+        self.assertGreater(plan["probe"]["particle_steps_per_s"], 0)
+
+    def test_unused_properties(self):
+        """A law that needs a property makes it used; a pair's own value hides the default."""
+        friction = ["--set", "effects=[{slot: normal, law: hertz}, {slot: tangential, law: mindlin}]"]
+        self.assertEqual(self.plan(*friction)["unused"], [])
+        heat = ["--set", "materials[glass].conductivity_w_mk=0.1"]
+        self.assertIn("materials[glass].conductivity_w_mk", self.plan(*heat)["unused"])
+        pair = "{between: [glass, %s], restitution: 0.5, friction_static: 0.1}"
+        pairs = ", ".join(pair % name for name in ("glass", "floor"))
+        hidden = ["--set", f"interactions=[{{between: default, restitution: 0.1}}, {pairs}]"]
+        self.assertEqual(self.plan(*friction, *hidden)["unused"], ["interactions[default].restitution"])
+
+    def test_unstable_step_is_refused(self):
+        limit = self.plan()["stages"][0]["limit_s"]
+        fixed = f"stages[fall].step_s={1.1 * limit}"
+        message = self.refused("check", self.scene, "--set", fixed)
+        self.assertIn("stages[fall]", message)
+        self.assertIn("allow_unstable_step", message)
+        self.plan("--set", fixed, "--set", "stages[fall].allow_unstable_step=true")
+        self.plan("--set", f"stages[fall].step_s={0.9 * limit}")
 
 
 if __name__ == "__main__":
