@@ -10,7 +10,7 @@
 #define CHUNK 256
 
 /* Safety of the recommended step against the limit, and the share of a contact that it may take (TM sec. 4). */
-#define SAFETY 0.5
+#define SAFETY 0.7
 #define SHARE_OF_CONTACT 0.1
 
 static status live_limit(simulation *sim, double *normal, double *turning, failure *why)
@@ -127,7 +127,7 @@ status limit_find(simulation *sim, step_limit *out, failure *why)
     TRY(live_limit(sim, &normal, &turning, why));
     out->live_s = fmin(normal, turning) < 1e29 ? fmin(normal, turning) : INFINITY;
     note(out, normal, "normal, contacts as they are");
-    note(out, turning, "tangential and rolling, contacts as they are");
+    note(out, turning, "all modes together, contacts as they are");
     TRY(approach_speed(sim, &speed, &wall_speed, why));
     double shortest = INFINITY;
     for (int a = 0; a < sim->scene->material_count; a++)

@@ -47,7 +47,7 @@ typedef struct contact_table {
 
 typedef struct step_limit {
     double limit_s;       /* largest stable step; infinite where nothing binds */
-    double recommended_s; /* half the limit, and a tenth of the shortest contact */
+    double recommended_s; /* seven tenths of the limit, and a tenth of the shortest contact */
     char binds[64];       /* "normal", "tangential and rolling", "tenth of the contact", ... */
     double contact_s;     /* duration of the shortest contact expected, 0: none */
     double live_s, expected_s; /* limits from the contacts there are, and from those to be expected */

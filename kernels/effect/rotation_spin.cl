@@ -13,15 +13,27 @@
     } while (0)
 #define ROTATION_GATHER(launch, k, sign) \
     LOAD3(torque + ((sign) < R(0.0) ? 3 * (launch)->record_stride : 0), (launch)->record_stride, k)
-/* The step limit keeps the sliding and rolling modes of a record where its torque stands. */
-#define ROTATION_STORE_MODES(launch, k, a, b)                         \
-    do {                                                              \
-        AT(torque, (launch)->record_stride, 0, k) = (a).stiffness;    \
-        AT(torque, (launch)->record_stride, 1, k) = (a).damping;      \
-        AT(torque, (launch)->record_stride, 2, k) = (b).stiffness;    \
-        AT(torque, (launch)->record_stride, 3, k) = (b).damping;      \
+/* The step limit keeps the normal of a record where its force stands, and the modes where its torque does. */
+#define LIMIT_STORE(launch, k, twice, direction, n, t, r)                     \
+    do {                                                                      \
+        STORE3(force, (launch)->record_stride, k, direction);                 \
+        AT(torque, (launch)->record_stride, 0, k) = (twice) * (n).stiffness;  \
+        AT(torque, (launch)->record_stride, 1, k) = (twice) * (n).damping;    \
+        AT(torque, (launch)->record_stride, 2, k) = (twice) * (t).stiffness;  \
+        AT(torque, (launch)->record_stride, 3, k) = (twice) * (t).damping;    \
+        AT(torque, (launch)->record_stride, 4, k) = (twice) * (r).stiffness;  \
+        AT(torque, (launch)->record_stride, 5, k) = (twice) * (r).damping;    \
     } while (0)
-#define ROTATION_LOAD_MODE(launch, k, m) AT(torque, (launch)->record_stride, m, k)
+#define LIMIT_LOAD(launch, k, direction, n, t, r)                             \
+    do {                                                                      \
+        direction = LOAD3(force, (launch)->record_stride, k);                 \
+        n.stiffness = AT(torque, (launch)->record_stride, 0, k);              \
+        n.damping = AT(torque, (launch)->record_stride, 1, k);                \
+        t.stiffness = AT(torque, (launch)->record_stride, 2, k);              \
+        t.damping = AT(torque, (launch)->record_stride, 3, k);                \
+        r.stiffness = AT(torque, (launch)->record_stride, 4, k);              \
+        r.damping = AT(torque, (launch)->record_stride, 5, k);                \
+    } while (0)
 
 INLINE vec3 rotation_advance(vec3 spin, vec3 torque, real inertia, real dt)
 {

@@ -7,8 +7,22 @@
 #define ROTATION_STORE(launch, i, w)
 #define ROTATION_STORE_TORQUE(launch, k, owner_torque, other_torque)
 #define ROTATION_GATHER(launch, k, sign) v3(R(0.0), R(0.0), R(0.0))
-#define ROTATION_STORE_MODES(launch, k, a, b)
-#define ROTATION_LOAD_MODE(launch, k, m) R(0.0)
+/* Without torques there is no room for the normal of a record: stiffnesses of a grain add up as if all its contacts stood in one line,
+ * which is on the safe side. */
+#define LIMIT_STORE(launch, k, twice, direction, n, t, r)                     \
+    do {                                                                      \
+        AT(force, (launch)->record_stride, 0, k) = (twice) * (n).stiffness;   \
+        AT(force, (launch)->record_stride, 1, k) = (twice) * (n).damping;     \
+        (void)(t);                                                            \
+        (void)(r);                                                            \
+    } while (0)
+#define LIMIT_LOAD(launch, k, direction, n, t, r)                             \
+    do {                                                                      \
+        direction = v3(R(1.0), R(0.0), R(0.0));                               \
+        n.stiffness = AT(force, (launch)->record_stride, 0, k);               \
+        n.damping = AT(force, (launch)->record_stride, 1, k);                 \
+        t.stiffness = t.damping = r.stiffness = r.damping = R(0.0);           \
+    } while (0)
 
 INLINE vec3 rotation_advance(vec3 spin, vec3 torque, real inertia, real dt)
 {

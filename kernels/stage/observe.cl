@@ -65,8 +65,8 @@ __kernel void observe_records(const clast_launch launch PAIR_DECLARE)
     observe_record(&launch, get_global_id(0), (int)get_group_id(0) >= launch.first_wall_group PAIR_PASS);
 }
 
-/* Stiffness and damping of every record's modes: the normal one where its force stands, the others where its torque stands. Both count
- * twice between two grains, whose motions may oppose each other (docs/theory.md). */
+/* Every record's normal, and stiffness and damping of its modes, where its force and torque stand. Both count twice between two grains: of
+ * the energy of a spring, (a + b)^2 <= 2 a^2 + 2 b^2 goes to its two ends (docs/theory.md). */
 __kernel void limit_records(const clast_launch launch PAIR_DECLARE)
 {
     int k = get_global_id(0);
@@ -81,13 +81,7 @@ __kernel void limit_records(const clast_launch launch PAIR_DECLARE)
     c.value = contact_constants + c.class * CONTACT_CONSTANTS;
     real twice = wall ? R(1.0) : R(2.0);
     mode n = normal_mode(&c), t = tangential_mode(&c), r = rolling_mode(&c);
-    AT(force, launch.record_stride, 0, k) = twice * n.stiffness;
-    AT(force, launch.record_stride, 1, k) = twice * n.damping;
-    t.stiffness *= twice;
-    t.damping *= twice;
-    r.stiffness *= twice;
-    r.damping *= twice;
-    ROTATION_STORE_MODES(&launch, k, t, r);
+    LIMIT_STORE(&launch, k, twice, c.n, n, t, r);
 }
 
 /* Largest dt with dt^2 a + 2 dt b < 4 (semi-implicit Euler). */
@@ -97,34 +91,86 @@ INLINE real limit_step(real a, real b)
     return s > R(0.0) ? R(4.0) / s : R(1e30);
 }
 
-/* Per chunk of grains the smallest limit of the normal modes, and of the sliding and rolling modes together. */
+/* A symmetric 3 x 3 matrix: sum of s I + d n n^T over contacts. */
+typedef struct limit_matrix {
+    real xx, yy, zz, xy, xz, yz;
+} limit_matrix;
+
+INLINE void limit_add(limit_matrix *m, real s, real d, vec3 n)
+{
+    m->xx += s + d * n.x * n.x;
+    m->yy += s + d * n.y * n.y;
+    m->zz += s + d * n.z * n.z;
+    m->xy += d * n.x * n.y;
+    m->xz += d * n.x * n.z;
+    m->yz += d * n.y * n.z;
+}
+
+/* Largest eigenvalue, by the trigonometric form. */
+INLINE real limit_eigenvalue(const limit_matrix *m)
+{
+    real q = (m->xx + m->yy + m->zz) / R(3.0);
+    real a = m->xx - q, b = m->yy - q, c = m->zz - q, off = m->xy * m->xy + m->xz * m->xz + m->yz * m->yz;
+    real p = sqrt((a * a + b * b + c * c + R(2.0) * off) / R(6.0));
+    if (!(p > R(0.0)))
+        return q;
+    real det = a * (b * c - m->yz * m->yz) - m->xy * (m->xy * c - m->yz * m->xz) + m->xz * (m->xy * m->yz - b * m->xz);
+    real r = det / (R(2.0) * p * p * p);
+    r = r > R(1.0) ? R(1.0) : (r < R(-1.0) ? R(-1.0) : r);
+    return q + R(2.0) * p * cos(acos(r) / R(3.0));
+}
+
+/* Motion and spin of one grain on its contacts, for stiffness or for damping: [[A, C], [C^T, B]] with spins scaled so that a turn weighs as
+ * much as a displacement. A: translation, B: rotation, C = cross product with `twist`. */
+typedef struct limit_block {
+    limit_matrix move, turn;
+    vec3 twist;
+} limit_block;
+
+INLINE void limit_contact(limit_block *b, vec3 n, real normal, real tangential, real rolling)
+{
+    limit_add(&b->move, tangential, normal - tangential, n);
+    limit_add(&b->turn, R(2.5) * tangential + rolling, R(-2.5) * tangential, n);
+    b->twist = add_scaled(b->twist, R(1.58113883008418967) * tangential, n);
+}
+
+INLINE real limit_largest(const limit_block *b)
+{
+    real move = limit_eigenvalue(&b->move), turn = limit_eigenvalue(&b->turn), half = R(0.5) * (move - turn);
+    return R(0.5) * (move + turn) + sqrt(half * half + dot3(b->twist, b->twist));
+}
+
+/* Per chunk of grains the smallest limit with the normal modes alone, and with all. */
 __kernel void limit_particles(const clast_launch launch, __global const uint *restrict slot_offset, __global const int *restrict slots,
                               __global const real *restrict force, __global const real *restrict radius, __global const real *restrict mass,
                               __global double *restrict partial ROTATION_LIMIT_FIELDS(DECLARE_READ, DECLARE_WRITE))
 {
     int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
-    real normal = R(1e30), turning = R(1e30);
+    real alone = R(1e30), all = R(1e30);
     for (int i = first; i < end; i++) {
-        real a = R(0.0), b = R(0.0), at = R(0.0), bt = R(0.0), ar = R(0.0), br = R(0.0);
+        limit_block zero = {{0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, {0, 0, 0}};
+        limit_block stiff = zero, damp = zero, stiff_normal = zero, damp_normal = zero;
         uint last = slot_offset[i / CLAST_BLOCK + 1];
         for (uint s = slot_offset[i / CLAST_BLOCK] + i % CLAST_BLOCK; s < last; s += CLAST_BLOCK) {
             int entry = slots[s];
             if (entry == 0)
                 break;
             int k = (entry > 0 ? entry : -entry) - 1;
-            a += AT(force, launch.record_stride, 0, k);
-            b += AT(force, launch.record_stride, 1, k);
-            at += ROTATION_LOAD_MODE(&launch, k, 0);
-            bt += ROTATION_LOAD_MODE(&launch, k, 1);
-            ar += ROTATION_LOAD_MODE(&launch, k, 2);
-            br += ROTATION_LOAD_MODE(&launch, k, 3);
+            vec3 n;
+            mode normal, tangential, rolling;
+            LIMIT_LOAD(&launch, k, n, normal, tangential, rolling);
+            real spin = R(2.5) / (radius[i] * radius[i]);
+            limit_contact(&stiff, n, normal.stiffness, tangential.stiffness, spin * rolling.stiffness);
+            limit_contact(&damp, n, normal.damping, tangential.damping, spin * rolling.damping);
+            limit_contact(&stiff_normal, n, normal.stiffness, R(0.0), R(0.0));
+            limit_contact(&damp_normal, n, normal.damping, R(0.0), R(0.0));
         }
-        real m = R(1.0) / mass[i], j = m / (R(0.4) * radius[i] * radius[i]);
-        normal = fmin(normal, limit_step(a * m, b * m));
-        turning = fmin(turning, limit_step(R(3.5) * at * m + ar * j, R(3.5) * bt * m + br * j));
+        real m = R(1.0) / mass[i];
+        alone = fmin(alone, limit_step(m * limit_largest(&stiff_normal), m * limit_largest(&damp_normal)));
+        all = fmin(all, limit_step(m * limit_largest(&stiff), m * limit_largest(&damp)));
     }
-    partial[2 * chunk] = normal;
-    partial[2 * chunk + 1] = turning;
+    partial[2 * chunk] = alone;
+    partial[2 * chunk + 1] = all;
 }
 
 /* The contact to expect between two bodies of a class: that of an impact at `speed`, or under `weight`, whichever is deeper.
