@@ -63,6 +63,12 @@ status observe_particle_sums(simulation *sim, particle_sums *out, failure *why)
     return STATUS_OK;
 }
 
+/* End of the records that stand for contacts; those that fill up the last work-group behind it repeat grain 0 and face 0. */
+static int64_t records_end(const simulation *sim)
+{
+    return sim->table.wall_base + sim->table.wall_record_count;
+}
+
 /* One component of a record array, on the host. */
 static status read_component(simulation *sim, cl_mem mem, int component, double **out, failure *why)
 {
@@ -92,7 +98,7 @@ status observe_contact_sums(simulation *sim, contact_sums *out, failure *why)
     status result = read_component(sim, force, 0, &ratio, why);
     if (result == STATUS_OK)
         result = read_component(sim, force, 1, &energy, why);
-    for (int64_t k = 0; k < sim->table.record_count && result == STATUS_OK; k++)
+    for (int64_t k = 0; k < records_end(sim) && result == STATUS_OK; k++)
         if (ratio[k] > 0.0) {
             out->overlap_max = fmax(out->overlap_max, ratio[k]);
             out->elastic += energy[k];
@@ -222,9 +228,9 @@ status observe_contacts(simulation *sim, bool walls_only, live_contact **out, in
     *count = 0;
     status result = read_records(sim, &r, why);
     int64_t first = walls_only ? sim->table.wall_base : 0;
-    if (result == STATUS_OK && !(*out = malloc(sizeof **out * (size_t)(sim->table.record_count - first + 1))))
+    if (result == STATUS_OK && !(*out = malloc(sizeof **out * (size_t)(records_end(sim) - first + 1))))
         result = fail(why, STATUS_ERROR, "out of memory");
-    for (int64_t k = first; k < sim->table.record_count && result == STATUS_OK; k++)
+    for (int64_t k = first; k < records_end(sim) && result == STATUS_OK; k++)
         if (r.overlap[k] > 0.0)
             (*out)[(*count)++] = make_contact(sim, &r, k);
     if (result == STATUS_OK)
@@ -235,7 +241,7 @@ status observe_contacts(simulation *sim, bool walls_only, live_contact **out, in
 
 static void add_totals(const simulation *sim, const record_arrays *r, double *const own[3], double *const opposite[3], double *out)
 {
-    for (int64_t k = 0; k < sim->table.record_count; k++) {
+    for (int64_t k = 0; k < records_end(sim); k++) {
         if (!(r->overlap[k] > 0.0))
             continue;
         for (int c = 0; c < 3; c++) {

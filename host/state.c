@@ -56,7 +56,7 @@ static status save_histories(simulation *sim, const int32_t *id, bundle *out, fa
         int32_t *pair = pass ? bundle_add(out, "contacts/pair", BUNDLE_I32, live, 2, NULL) : NULL;
         double *history = pass ? bundle_add(out, "contacts/history", BUNDLE_F64, live, columns, NULL) : NULL;
         live = 0;
-        for (int64_t k = 0; k < t->record_count; k++) {
+        for (int64_t k = 0; k < t->wall_base + t->wall_record_count; k++) { /* what fills up the last work-group is no contact */
             bool any = false;
             for (int c = 0; c < columns; c++)
                 any = any || column[c][k] != 0.0;
