@@ -136,8 +136,8 @@ INLINE void limit_contact(limit_block *b, vec3 n, real normal, real tangential, 
 
 INLINE real limit_largest(const limit_block *b)
 {
-    real move = limit_eigenvalue(&b->move), turn = limit_eigenvalue(&b->turn), half = R(0.5) * (move - turn);
-    return R(0.5) * (move + turn) + sqrt(half * half + dot3(b->twist, b->twist));
+    real move = limit_eigenvalue(&b->move), turn = limit_eigenvalue(&b->turn), apart = R(0.5) * (move - turn);
+    return R(0.5) * (move + turn) + sqrt(apart * apart + dot3(b->twist, b->twist));
 }
 
 /* Per chunk of grains the smallest limit with the normal modes alone, and with all. */
