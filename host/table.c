@@ -230,7 +230,7 @@ static status fit_records(simulation *sim, int64_t old_record_stride, failure *w
 {
     contact_table *t = &sim->table;
     int64_t need = t->record_count;
-    if (need <= t->record_capacity)
+    if (need <= t->record_capacity && t->record_capacity > 0)
         return STATUS_OK;
     int64_t capacity = round_up((int64_t)((double)need * RESERVE) + GROUP, GROUP);
     int next = 1 - t->now;
