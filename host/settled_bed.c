@@ -23,7 +23,7 @@
 #define PART_MOST      20000
 #define PART_WANTED    15000.0
 #define GRAVITY        9.81
-#define REST           1.0e-8 /* kinetic energy as a fraction of the sum of m g r */
+#define REST           1.0e-7 /* kinetic energy as a fraction of the sum of m g r; without its history a bed moves more than that */
 #define SETTLE_MAX_S   3.0
 #define SETTLE_CHECK   500  /* steps between looks at the energy */
 #define SETTLE_DAMPING 20.0 /* 1/s */
