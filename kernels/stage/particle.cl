@@ -58,7 +58,8 @@ __kernel void particle_stage(const clast_launch launch, __global clast_control *
     particle_gather(&launch, get_group_id(0), get_local_id(0), &f, &t PARTICLE_PASS);
     real travel2 = particle_advance(&launch, i, f, t PARTICLE_PASS);
     if (i < launch.particle_count && !(travel2 <= (real)launch.travel2)) {
-        atomic_or(&control->reason, CLAST_HALT_TRAVEL);
-        atomic_min(&control->halt_step, launch.step + 1);
+        /* whoever writes, writes the same */
+        control->reason = CLAST_HALT_TRAVEL;
+        control->halt_step = launch.step + 1;
     }
 }
