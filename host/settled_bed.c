@@ -28,14 +28,6 @@
 #define SETTLE_CHECK   500  /* steps between looks at the energy */
 #define SETTLE_DAMPING 20.0 /* 1/s */
 
-/* How the bed is put together: columns by rows of mirror images of one part. */
-typedef struct layout {
-    int columns, rows;
-    int64_t part;                        /* grains of the part */
-    int64_t surplus;                     /* grains to leave out, fewer than there are images */
-    double side, part_x, part_y, height; /* m; height before it settles */
-} layout;
-
 /* Sum of volumes of so many grains on average: <r^3> of the uniform distribution. */
 static double solid_volume(double particles)
 {
@@ -48,9 +40,9 @@ static double layout_cost(int64_t particles, int columns, int rows, int64_t part
     return cost + (part * columns * rows == particles ? 0.0 : 0.2);
 }
 
-static layout choose_layout(int64_t particles)
+bed_layout settled_bed_layout(int64_t particles)
 {
-    layout best = {.columns = 1, .rows = 1, .part = particles};
+    bed_layout best = {.columns = 1, .rows = 1, .part = particles};
     double least = INFINITY;
     int most = particles > PART_MOST ? (int)sqrt(2.0 * (double)particles / PART_LEAST) + 1 : 0;
     for (int columns = 1; columns <= most; columns++)
@@ -59,7 +51,7 @@ static layout choose_layout(int64_t particles)
             if (part < PART_LEAST || part > PART_MOST || layout_cost(particles, columns, rows, part) >= least)
                 continue;
             least = layout_cost(particles, columns, rows, part);
-            best = (layout){.columns = columns, .rows = rows, .part = part};
+            best = (bed_layout){.columns = columns, .rows = rows, .part = part};
         }
     best.surplus = best.part * best.columns * best.rows - particles;
     best.side = cbrt(solid_volume((double)particles) / SETTLED);
@@ -154,7 +146,7 @@ static status settle(simulation *sim, failure *why)
     return STATUS_OK;
 }
 
-static status pour(const layout *l, device *device, const char *kernels, bed *out, failure *why)
+static status pour(const bed_layout *l, device *device, const char *kernels, bed *out, failure *why)
 {
     scene *poured = NULL;
     simulation *sim = NULL;
@@ -178,7 +170,7 @@ static status pour(const layout *l, device *device, const char *kernels, bed *ou
 
 /* ---- the cache ---- */
 
-static bool cache_file(const layout *l, int64_t particles, char *path, size_t size)
+static bool cache_file(const bed_layout *l, int64_t particles, char *path, size_t size)
 {
     char directory[3072];
     if (!cache_directory(directory, sizeof directory))
@@ -250,7 +242,7 @@ static void cache_store(const char *path, const bed *of)
     bundle_free(&out);
 }
 
-static status get_part(const layout *l, int64_t particles, device *device, const char *kernels, bed *out, failure *why)
+static status get_part(const bed_layout *l, int64_t particles, device *device, const char *kernels, bed *out, failure *why)
 {
     char path[4096];
     bool cached = cache_file(l, particles, path, sizeof path);
@@ -278,7 +270,7 @@ static int64_t highest(const bed *b)
 }
 
 /* Grain i of the part, seen in the given image. Spins are axial: a mirror across x keeps their x component and turns the others. */
-static void place_image(const layout *l, const bed *part, int64_t i, int column, int row, bed *out, int64_t to)
+static void place_image(const bed_layout *l, const bed *part, int64_t i, int column, int row, bed *out, int64_t to)
 {
     const double *x = part->position[i], *v = part->velocity[i], *w = part->spin[i];
     double mx = column % 2 ? -1.0 : 1.0, my = row % 2 ? -1.0 : 1.0;
@@ -295,8 +287,7 @@ static void place_image(const layout *l, const bed *part, int64_t i, int column,
     out->temperature[to] = NAN;
 }
 
-/* The surplus is left out from the top, one grain an image. */
-static status assemble(const layout *l, const bed *part, int64_t particles, bed *out, failure *why)
+status settled_bed_assemble(const bed_layout *l, const bed *part, int64_t particles, bed *out, failure *why)
 {
     TRY(allocate_bed(particles, out, why));
     int64_t top = highest(part), to = 0;
@@ -323,10 +314,10 @@ status settled_bed_make(int64_t particles, bool rolling, device *device, const c
     if (particles < SETTLED_BED_LEAST || particles > INT32_MAX)
         return fail(why, STATUS_BAD_INPUT, "the bed can have %d to %d particles, not %lld", SETTLED_BED_LEAST, INT32_MAX,
                     (long long)particles);
-    layout l = choose_layout(particles);
+    bed_layout l = settled_bed_layout(particles);
     bed part;
     TRY(get_part(&l, particles, device, kernels, &part, why));
-    status result = assemble(&l, &part, particles, &out->bed, why);
+    status result = settled_bed_assemble(&l, &part, particles, &out->bed, why);
     bed_free(&part);
     if (result == STATUS_OK)
         result = make_scene(particles, l.side, l.side, l.height, rolling, false, false, &out->scene, why);

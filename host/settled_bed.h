@@ -18,4 +18,16 @@ typedef struct settled_bed {
 status settled_bed_make(int64_t particles, bool rolling, device *device, const char *kernels, settled_bed *out, failure *why);
 void settled_bed_free(settled_bed *bed);
 
+/* How the bed is put together: columns by rows of mirror images of one part. */
+typedef struct bed_layout {
+    int columns, rows;
+    int64_t part;                        /* grains of the part */
+    int64_t surplus;                     /* grains to leave out, fewer than there are images */
+    double side, part_x, part_y, height; /* m; height before it settles */
+} bed_layout;
+
+bed_layout settled_bed_layout(int64_t particles);
+/* Places the images of a part; the surplus is left out from the top, one grain an image. */
+status settled_bed_assemble(const bed_layout *layout, const bed *part, int64_t particles, bed *out, failure *why);
+
 #endif
