@@ -306,6 +306,14 @@ static hid_t access_list(commit_file *file)
     return access;
 }
 
+/* The superblock is written last, so a file that was killed while it was created begins with a hole. */
+static bool never_finished(int descriptor)
+{
+    static const char hole[48]; /* its size */
+    char start[sizeof hole];
+    return pread(descriptor, start, sizeof start, 0) == (ssize_t)sizeof start && memcmp(start, hole, sizeof hole) == 0;
+}
+
 /* Opens the descriptor; refuses what is not ours to overwrite and what another process is writing. */
 static status take(commit_file *file, bool create, failure *why)
 {
@@ -325,7 +333,7 @@ static status take(commit_file *file, bool create, failure *why)
     struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     if (fcntl(file->descriptor, F_OFD_SETLK, &lock) != 0 && (errno == EAGAIN || errno == EACCES))
         return fail(why, STATUS_BAD_INPUT, "%s: another run is writing this file", file->path);
-    if (about.st_size > 0 && !hdf5_signature(file->descriptor))
+    if (about.st_size > 0 && !hdf5_signature(file->descriptor) && !(create && never_finished(file->descriptor)))
         return fail(why, STATUS_BAD_INPUT, create ? "%s: exists and is not an HDF5 file: not overwritten; give another name" :
                                                     "%s: not an HDF5 file", file->path);
     if (create && ftruncate(file->descriptor, 0) != 0)

@@ -10,8 +10,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ptrace.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -431,6 +433,69 @@ static void test_kill_leaves_frames(void **state)
     }
 }
 
+/* Writes three frames, and after the creation and after each frame one byte into the pipe. */
+static void traced_child(int done)
+{
+    failure why;
+    results *r;
+    results_spec spec = example();
+    ptrace(PTRACE_TRACEME, 0, NULL, NULL);
+    raise(SIGSTOP);
+    bool good = results_create(in_folder("w.h5"), &spec, &r, &why) == STATUS_OK && write(done, "", 1) == 1;
+    for (int64_t k = 0; k < 3 && good; k++)
+        good = put_both(r, k, &why) == STATUS_OK && write(done, "", 1) == 1;
+    _exit(good && results_close(r, &why) == STATUS_OK ? 0 : 1);
+}
+
+/* Kills the child as it enters its `count`th write. False when it ended before. */
+static bool kill_at_write(pid_t child, int count)
+{
+    int how;
+    waitpid(child, &how, 0);
+    ptrace(PTRACE_SETOPTIONS, child, NULL, (void *)(uintptr_t)(PTRACE_O_TRACESYSGOOD | PTRACE_O_EXITKILL));
+    for (int writes = 0;;) {
+        ptrace(PTRACE_SYSCALL, child, NULL, NULL);
+        if (waitpid(child, &how, 0) != child || WIFEXITED(how))
+            return false;
+        struct __ptrace_syscall_info info;
+        if (!WIFSTOPPED(how) || WSTOPSIG(how) != (SIGTRAP | 0x80) ||
+            ptrace(PTRACE_GET_SYSCALL_INFO, child, (void *)(uintptr_t)sizeof info, &info) <= 0)
+            continue;
+        if (info.op == PTRACE_SYSCALL_INFO_ENTRY && info.entry.nr == SYS_pwrite64 && ++writes == count) {
+            kill(child, SIGKILL);
+            waitpid(child, &how, 0);
+            return true;
+        }
+    }
+}
+
+/* Every single write of three frames in turn is the one that does not happen any more. */
+static void test_kill_at_every_write(void **state)
+{
+    (void)state;
+    bool killed = true;
+    int whole = 0;
+    for (int count = 1; killed; count++) {
+        int done[2];
+        assert_int_equal(pipe(done), 0);
+        pid_t child = fork();
+        if (child == 0)
+            traced_child(done[1]);
+        close(done[1]);
+        killed = kill_at_write(child, count);
+        char bytes[8];
+        ssize_t told = read(done[0], bytes, sizeof bytes); /* all were written before the kill */
+        close(done[0]);
+        if (told < 1)
+            continue; /* not even created */
+        assert_in_range(check_rows(in_folder("w.h5"), true), told - 1, told);
+        whole++;
+    }
+    if (whole <= 1)
+        skip(); /* no tracing here */
+    assert_true(whole > 60);
+}
+
 static void test_continue_cuts(void **state)
 {
     (void)state;
@@ -502,7 +567,7 @@ static void test_full_disk(void **state)
     struct stat about;
     assert_int_equal(stat(in_folder("d.h5"), &about), 0);
     int failures = 0;
-    for (rlim_t size = (rlim_t)about.st_size + 4000; size < (rlim_t)about.st_size + 2000000; size += 49999) {
+    for (rlim_t size = (rlim_t)about.st_size + 4000; size < (rlim_t)about.st_size + 2000000; size += 99991) {
         failure why = {{0}}, again = {{0}};
         results *r;
         results_spec spec = example();
@@ -528,7 +593,7 @@ static void test_full_disk(void **state)
         assert_int_equal(results_close(r, &why), STATUS_OK);
         assert_int_equal(check_whole(in_folder("d.h5")), frames + 1);
     }
-    assert_true(failures > 10);
+    assert_true(failures > 15);
 }
 
 static void test_unwritable_paths(void **state)
@@ -613,6 +678,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_no_box_no_contacts_no_particles, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_reading_particles, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_kill_leaves_frames, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_kill_at_every_write, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_continue_cuts, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_continue_refuses_what_does_not_fit, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_full_disk, set_up, tear_down),

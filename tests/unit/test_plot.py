@@ -1,0 +1,117 @@
+"""tools/plot draws from a results file alone, and says in one line what it cannot draw."""
+import contextlib
+import importlib.machinery
+import importlib.util
+import io
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+ROOT = os.environ.get("CLAST_SOURCE_DIR", os.path.join(os.path.dirname(__file__), "..", ".."))
+PLOT = os.path.join(ROOT, "tools", "plot")
+sys.dont_write_bytecode = True
+plot = importlib.util.module_from_spec(importlib.util.spec_from_loader("plot", importlib.machinery.SourceFileLoader("plot", PLOT)))
+plot.__spec__.loader.exec_module(plot)
+
+
+def series(group, name, value, unit, time):
+    element = group.create_group(name)
+    element["value"] = value
+    element["value"].attrs["unit"] = unit
+    element["time"] = time
+    element["step"] = np.arange(len(time))
+
+
+def results(path, dimensions=3):
+    """Two grains apart along x: the left one is seen from -y only where the right one is not in front."""
+    time = np.array([0.0, 0.5, 1.0])
+    x = np.zeros((3, 3, 3))
+    x[:, 1] = [4, 0, 0]
+    x[:, 2] = [4, -3, 0]  # hides grain 1 from -y
+    x[2, 0] = np.nan      # left
+    with h5py.File(path, "w") as f:
+        particles = f.create_group("particles/all")
+        series(particles, "position", x, "m", time)
+        series(particles, "velocity", np.arange(27.0).reshape(3, 3, 3), "m/s", time)
+        particles["radius"] = np.array([1.0, 1.0, 1.0])
+        particles["group"] = np.array([0, 1, 2], np.int32)
+        series(f.create_group("observables"), "kinetic_energy", np.array([3.0, 2.0, 1.0]), "J", time)
+        series(f["observables"], "walls/floor/force", np.ones((3, 3)), "N", time)
+        f["clast/scene"] = f"dimensions: {dimensions}\n"
+
+
+class TestPlot(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.file = os.path.join(self.folder.name, "a.h5")
+        self.out = os.path.join(self.folder.name, "a.png")
+        results(self.file)
+
+    def plot(self, *arguments):
+        """In this process: importing matplotlib takes longer than drawing."""
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            return plot.main(arguments), said.getvalue()
+
+    def draws(self, *arguments):
+        self.assertEqual(self.plot(*arguments), (0, ""))
+        self.assertGreater(os.path.getsize(arguments[arguments.index("--out") + 1]), 1000)
+
+    def refuses(self, words, *arguments):
+        code, said = self.plot(*arguments)
+        self.assertEqual((code, said.count("\n")), (2, 1), said)
+        self.assertIn(words, said)
+
+    def test_command(self):
+        done = subprocess.run([PLOT, "bed", self.file + "x", "--out", self.out], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        done = subprocess.run([PLOT, "bed", "--help"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("--film", done.stdout)
+
+    def test_draws_beds(self):
+        self.draws("bed", self.file, "--out", self.out)
+        self.draws("bed", self.file, "--out", self.out, "--film", "3", "--field", "velocity_z", "--view", "-y", "--range", "-1", "9")
+        self.draws("bed", self.file, "--out", self.out, "--frames", "0,-1", "--field", "group", "--cut", "y=-1", "--view", "30,40")
+        self.draws("bed", self.file, "--out", os.path.join(self.folder.name, "a.svg"), "--time", "0.4")
+        results(self.file, dimensions=2)
+        self.draws("bed", self.file, "--out", self.out)
+
+    def test_draws_observables(self):
+        self.draws("observables", self.file, "--out", self.out)
+        self.draws("observables", self.file, "--out", self.out, "--names", "walls/floor/force", "--log")
+
+    def colours(self, *arguments):
+        """Which of the three colours of the groups are in the picture, the colour bar left out."""
+        import matplotlib.image
+        self.draws("bed", self.file, "--out", self.out, "--field", "group", *arguments)
+        rgb = matplotlib.image.imread(self.out)[:, :-126, :3]
+        blue = (rgb[..., 2] > rgb[..., 1] + 0.1).sum()
+        green = ((rgb[..., 1] > rgb[..., 0] + 0.2) & (rgb[..., 1] > rgb[..., 2] + 0.05)).sum()
+        orange = (rgb[..., 0] > rgb[..., 2] + 0.4).sum()
+        return blue > 500, orange > 500, green > 500
+
+    def test_near_grains_hide_far_ones(self):
+        self.assertEqual(self.colours("--view", "-y", "--frame", "0"), (True, False, True))
+        self.assertEqual(self.colours("--view", "y", "--frame", "0"), (True, True, False))
+        self.assertEqual(self.colours("--view", "-y", "--frame", "0", "--cut", "y=-1"), (True, True, False))
+        self.assertEqual(self.colours("--view", "-y", "--frame", "2"), (False, False, True))  # grain 0 has left
+
+    def test_refuses_in_one_line(self):
+        self.refuses("no such file", "bed", self.file + "x", "--out", self.out)
+        self.refuses("velocity_z", "bed", self.file, "--out", self.out, "--field", "colour")
+        self.refuses("0 to 2", "bed", self.file, "--out", self.out, "--frame", "3")
+        self.refuses("kinetic_energy", "observables", self.file, "--out", self.out, "--names", "heat")
+        self.refuses(".png", "bed", self.file, "--out", self.out + ".jpg")
+        self.refuses("y=0.05", "bed", self.file, "--out", self.out, "--cut", "w=1")
+        self.refuses("cannot be written", "bed", self.file, "--out", os.path.join(self.folder.name, "no", "a.png"))
+        self.refuses("cannot be read", "bed", PLOT, "--out", self.out)
+
+
+if __name__ == "__main__":
+    unittest.main()
