@@ -504,6 +504,22 @@ static void test_moving_walls(void **state)
     case_close(&c);
 }
 
+/* Walls that sweep through grains that nothing moves: the walls alone ask for tables. */
+static void test_sweeping_walls(void **state)
+{
+    (void)state;
+    sim_case c;
+    case_open_bed(&c, "effects: [{slot: body, law: viscous_damping, coefficient: 0}]\n" MATERIAL SKIN("0.01") MOVING_WALLS,
+                  random_bed(300, 0.01, 0.05, 74));
+    simulation_set_step(c.sim, 1e-4);
+    for (int n = 0; n < 60; n++) {
+        MUST(simulation_advance(c.sim, 17, why));
+        check_nothing_missed(c.sim);
+    }
+    assert_true(c.sim->rebuilds > 20 && c.sim->rebuilds < 1000);
+    case_close(&c);
+}
+
 /* A bed that flies as a whole needs no table on the way, and comes to no harm. */
 static void test_drift(void **state)
 {
@@ -804,12 +820,12 @@ static void test_all_leave(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random),          cmocka_unit_test(test_boulder),     cmocka_unit_test(test_periodic),
-        cmocka_unit_test(test_periodic_edges),  cmocka_unit_test(test_clustered),   cmocka_unit_test(test_nothing_near),
-        cmocka_unit_test(test_one_grain_flies), cmocka_unit_test(test_walls),       cmocka_unit_test(test_moving_walls),
-        cmocka_unit_test(test_drift),           cmocka_unit_test(test_far_outside), cmocka_unit_test(test_histories),
-        cmocka_unit_test(test_growth),          cmocka_unit_test(test_owner_sign),  cmocka_unit_test(test_leavers),
-        cmocka_unit_test(test_all_leave),
+        cmocka_unit_test(test_random),          cmocka_unit_test(test_boulder),   cmocka_unit_test(test_periodic),
+        cmocka_unit_test(test_periodic_edges),  cmocka_unit_test(test_clustered), cmocka_unit_test(test_nothing_near),
+        cmocka_unit_test(test_one_grain_flies), cmocka_unit_test(test_walls),     cmocka_unit_test(test_moving_walls),
+        cmocka_unit_test(test_sweeping_walls),  cmocka_unit_test(test_drift),     cmocka_unit_test(test_far_outside),
+        cmocka_unit_test(test_histories),       cmocka_unit_test(test_growth),    cmocka_unit_test(test_owner_sign),
+        cmocka_unit_test(test_leavers),         cmocka_unit_test(test_all_leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
