@@ -185,11 +185,14 @@ static bool write_entry(hid_t file, const bundle_entry *entry)
     hid_t space = H5Screate_simple(entry->type == BUNDLE_TEXT ? 1 : 2, extent, NULL), creation = H5Pcreate(H5P_DATASET_CREATE);
     H5Pset_obj_track_times(creation, false);
     H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
-    hid_t dataset = H5Dcreate2(file, entry->name, stored_type(entry->type), space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    hid_t links = H5Pcreate(H5P_LINK_CREATE);
+    H5Pset_create_intermediate_group(links, 1); /* a slash in a name makes a group */
+    hid_t dataset = H5Dcreate2(file, entry->name, stored_type(entry->type), space, links, creation, H5P_DEFAULT);
     bool done = dataset >= 0 && write_int_attribute(dataset, "type", (int)entry->type) &&
                 (empty || H5Dwrite(dataset, memory_type(entry->type), H5S_ALL, H5S_ALL, H5P_DEFAULT, entry->data) >= 0);
     if (dataset >= 0)
         H5Dclose(dataset);
+    H5Pclose(links);
     H5Pclose(creation);
     H5Sclose(space);
     return done;
@@ -337,16 +340,16 @@ static status read_entry(hid_t dataset, const char *name, reading *r)
     return STATUS_OK;
 }
 
-static herr_t visit(hid_t group, const char *name, const H5L_info_t *about, void *context)
+static herr_t visit(hid_t file, const char *name, const H5L_info_t *about, void *context)
 {
     reading *r = context;
-    hid_t dataset = about->type == H5L_TYPE_HARD ? H5Dopen2(group, name, H5P_DEFAULT) : -1;
-    if (dataset < 0) {
+    hid_t object = about->type == H5L_TYPE_HARD ? H5Oopen(file, name, H5P_DEFAULT) : -1;
+    if (object >= 0 && H5Iget_type(object) == H5I_DATASET)
+        r->result = read_entry(object, name, r);
+    else if (object < 0 || H5Iget_type(object) != H5I_GROUP)
         r->result = fail(r->why, STATUS_BAD_INPUT, "%s: entry '%s' is damaged: it is not an array", r->path, name);
-        return 1;
-    }
-    r->result = read_entry(dataset, name, r);
-    H5Dclose(dataset);
+    if (object >= 0)
+        H5Oclose(object);
     return r->result == STATUS_OK ? 0 : 1;
 }
 
@@ -367,7 +370,7 @@ status bundle_read(const char *path, bundle *out, failure *why)
         return fail(why, STATUS_BAD_INPUT, "%s: cannot be read: %s", path, reason);
     }
     reading r = {out, path, STATUS_OK, why};
-    if (H5Literate(file, H5_INDEX_NAME, H5_ITER_INC, NULL, visit, &r) < 0 && r.result == STATUS_OK)
+    if (H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, visit, &r) < 0 && r.result == STATUS_OK)
         r.result = fail(why, STATUS_BAD_INPUT, "%s: damaged: its entries cannot be listed", path);
     H5Fclose(file);
     if (r.result != STATUS_OK)

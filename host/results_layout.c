@@ -109,7 +109,7 @@ static bool clock_create(clock_series *clock, hid_t file)
 
 static bool clock_link(const clock_series *clock, hid_t file, const char *element)
 {
-    char step[512], time[512];
+    char step[520], time[520];
     snprintf(step, sizeof step, "%s/step", element);
     snprintf(time, sizeof time, "%s/time", element);
     return H5Olink(clock->step.dataset, file, step, H5P_DEFAULT, H5P_DEFAULT) >= 0 &&
@@ -120,7 +120,7 @@ static bool clock_link(const clock_series *clock, hid_t file, const char *elemen
 static bool clocks_create(results *r, hid_t file)
 {
     bool done = clock_create(&r->frames, file) && clock_create(&r->samples, file);
-    char element[512];
+    char element[512]; /* names come from the scene's keys and walls, far shorter */
     for (int k = 0; k < r->field_count && done; k++) {
         snprintf(element, sizeof element, "/particles/all/%s", r->field[k].name);
         done = r->field[k].constant || clock_link(&r->frames, file, element);

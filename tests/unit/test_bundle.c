@@ -56,9 +56,9 @@ static bundle example(void)
     bundle_add(&b, "empty", BUNDLE_F64, 0, 3, NULL);
     bundle_add(&b, "zeros", BUNDLE_I32, 1000, 1, NULL);
     bundle_add_text(&b, "scene", prose);
-    bundle_add_text(&b, "no_text", "");
+    bundle_add_text(&b, "run/stage/name", "");
     bundle_add_f64(&b, "time", 1.0 / 3.0);
-    bundle_add_i64(&b, "step", (int64_t)1 << 53 | 1);
+    bundle_add_i64(&b, "run/step", (int64_t)1 << 53 | 1);
     return b;
 }
 
@@ -89,10 +89,10 @@ static void check_example(const char *path)
         assert_int_equal(((int32_t *)e->data)[k], 0);
     assert_int_equal(bundle_get(&b, path, "scene", BUNDLE_TEXT, -1, -1, &e, &why), STATUS_OK);
     assert_string_equal(e->data, prose);
-    assert_int_equal(bundle_get(&b, path, "no_text", BUNDLE_TEXT, 0, -1, &e, &why), STATUS_OK);
+    assert_int_equal(bundle_get(&b, path, "run/stage/name", BUNDLE_TEXT, 0, -1, &e, &why), STATUS_OK);
     assert_string_equal(e->data, "");
     assert_true(*(double *)bundle_find(&b, "time")->data == 1.0 / 3.0);
-    assert_true(*(int64_t *)bundle_find(&b, "step")->data == ((int64_t)1 << 53 | 1));
+    assert_true(*(int64_t *)bundle_find(&b, "run/step")->data == ((int64_t)1 << 53 | 1));
     bundle_free(&b);
 }
 
