@@ -49,10 +49,10 @@ static void test_bed_in_memory(void **state)
     free(contact);
     assert_int_equal(clast_bed_advance(bed, 2000, message), CLAST_OK);
     assert_int_equal(clast_bed_step(bed), 3000);
-    assert_float_equal(clast_bed_time(bed), 3000 * 2e-8, 1e-15);
+    assert_true(fabs(clast_bed_time(bed) - 3000 * 2e-8) < 1e-15);
     assert_int_equal(clast_bed_field(bed, "velocity", &v[0][0], message), CLAST_OK);
-    assert_float_equal(v[0][0], -10.0, 1e-5);
-    assert_float_equal(v[0][0] + v[1][0], 0.0, 1e-13);
+    assert_true(fabs(v[0][0] + 10.0) < 1e-5);
+    assert_true(fabs(v[0][0] + v[1][0]) < 1e-13);
     assert_int_equal(clast_bed_field(bed, "temperature", &v[0][0], message), CLAST_BAD_INPUT);
     assert_non_null(strstr(message, "temperature"));
     clast_bed_close(bed);
