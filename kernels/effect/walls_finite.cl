@@ -11,6 +11,13 @@ INLINE real walls_clamp(real x, real limit)
     return x > limit ? limit : (x < -limit ? -limit : x);
 }
 
+/* Inside the border by more than rounding, so that a grain right over a seam is on the edge of both faces and not on both faces. */
+INLINE bool walls_within(const __global clast_face *face, real u, real v)
+{
+    real a = R(0.999999999) * (real)face->extent[0], b = R(0.999999999) * (real)face->extent[1];
+    return face->shape == CLAST_FACE_RECTANGLE ? fabs(u) < a && fabs(v) < b : u * u + v * v < a * a;
+}
+
 INLINE wall_nearest walls_find(const __global clast_face *face, vec3 x)
 {
     vec3 normal = v3((real)face->normal[0], (real)face->normal[1], (real)face->normal[2]);
@@ -37,7 +44,7 @@ INLINE wall_nearest walls_find(const __global clast_face *face, vec3 x)
         uc = shrink * u;
         vc = shrink * v;
     }
-    r.on_face = uc == u && vc == v;
+    r.on_face = walls_within(face, u, v);
     r.point = add_scaled(add_scaled(origin, uc, e1), vc, e2);
     vec3 apart = r.on_face ? scale(height, normal) : sub(x, r.point);
     r.distance = r.on_face ? fabs(height) : sqrt(dot3(apart, apart));
