@@ -1,0 +1,113 @@
+/* Momentum and angular momentum of isolated clusters that collide, slide, roll and spin: kept to rounding by action and reaction at one
+ * contact point; with the radius as lever arm they drift as TM's printed equation makes them. */
+#include "cluster.h"
+
+static const double young = 1.0e7, density = 2500.0, radius = 1.0e-3;
+
+static text cluster_head(const char *effects)
+{
+    text t = {0};
+    put(&t, "effects:\n%s", effects);
+    put(&t, "materials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: 0.3}]\n", density, young);
+    put(&t, "interactions: [{between: default, normal_damping_ratio: 0.1, tangential_damping_ratio: 0.2, rolling_damping_ratio: 0.1, friction_static: 0.5, "
+            "friction_dynamic: 0.4, rolling_friction: 0.1, normal_stiffness_n_m: 500, tangential_stiffness_n_m: 300}]\n");
+    return t;
+}
+
+static double size(const double *a)
+{
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+/* 64 grains through 8,000 steps. The sums' terms are of the size of sum m |v| and of sum m |x| |v|; each of the thousands of contact-steps rounds
+ * at 1e-16 of its own force. */
+static void check_kept(const char *effects)
+{
+    cluster bed = cluster_make(4, radius, 0.2, 100.0, 7);
+    text t = cluster_head(effects);
+    put_cluster(&t, &bed);
+    physics_case c = case_open(&t);
+    double linear = 0.0, angular = 0.0;
+    for (int n = 0; n < bed.count; n++) {
+        double m = sphere_mass(density, bed.radius[n]);
+        linear += m * size(bed.velocity[n]);
+        angular += m * size(bed.velocity[n]) * size(bed.position[n]) + 0.4 * m * bed.radius[n] * bed.radius[n] * size(bed.spin[n]);
+    }
+    particle_sums before = case_sums(&c);
+    int64_t touching = 0;
+    for (int part = 0; part < 80; part++) {
+        case_run(&c, 100, 5.0e-6);
+        touching += case_contact_sums(&c).contacts;
+        particle_sums now = case_sums(&c);
+        for (int k = 0; k < 3; k++) {
+            NEAR(now.momentum[k], before.momentum[k], 1e-14 * linear);
+            NEAR(now.angular[k], before.angular[k], 1e-14 * angular);
+        }
+    }
+    assert_true(touching > 100); /* of 80 looks; a contact lasts about one */
+    assert_true(case_sums(&c).kinetic < 0.9 * before.kinetic);
+    case_close(&c);
+}
+
+static void test_kept_with_history(void **state)
+{
+    (void)state;
+    check_kept("  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin}\n  - {slot: rolling, law: elastic_plastic}\n");
+}
+
+static void test_kept_by_the_other_laws(void **state)
+{
+    (void)state;
+    check_kept("  - {slot: normal, law: linear}\n  - {slot: tangential, law: coulomb_linear}\n  - {slot: rolling, law: constant_torque}\n");
+}
+
+/* Two spheres that slide on each other: with arms r the torques are r1 n x f and r2 n x f, the pair of forces turns with r1 + r2 - d, and d (n x f)
+ * is left over. */
+static double drift(const char *arm, double *expected)
+{
+    text t = cluster_head("");
+    t.length = 0;
+    put(&t, "effects:\n  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin, lever_arm: %s}\n", arm);
+    put(&t, "materials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: 0.3}]\n", density, young);
+    put(&t, "interactions: [{between: default, friction_static: 0.5}]\nparticles:\n  - name: p\n    material: m\n    generator: list\n    items:\n");
+    double r1 = 1.0e-3, r2 = 2.0e-3;
+    put_grain(&t, r1, (double[]){-r1, 1.0e-3, 0}, (double[]){0.2, 0, 0}, (double[]){0, 0, 900});
+    put_grain(&t, r2, (double[]){r2, 1.0e-3, 0}, (double[]){-0.2, 0, 0}, (double[]){0, 0, 900});
+    physics_case c = case_open(&t);
+    double before = case_sums(&c).angular[2], dt = 1.0e-7;
+    *expected = 0.0;
+    for (int s = 0; s < 4000; s++) { /* d (n x f_t) dt of each step, with the force that the step uses: read back from the change of spin */
+        double *x = case_field(&c, "position"), *w = case_field(&c, "spin"), spin = w[2];
+        double overlap = fmax(0.0, r1 + r2 - hypot(x[3] - x[0], x[4] - x[1]));
+        free(x);
+        free(w);
+        case_run(&c, 1, dt);
+        double torque = 0.4 * sphere_mass(density, r1) * r1 * r1 * (case_get(&c, "spin", 0, 2) - spin);
+        *expected += overlap * torque / r1;
+    }
+    double change = case_sums(&c).angular[2] - before;
+    assert_int_equal(case_contact_sums(&c).contacts, 0);
+    case_close(&c);
+    return change;
+}
+
+static void test_drift_with_radius(void **state)
+{
+    (void)state;
+    double expected, kept, l = 0.4 * sphere_mass(density, 2.0e-3) * 4.0e-6 * 900.0;
+    kept = drift("contact_point", &expected);
+    NEAR(kept, 0.0, 1e-14 * l);
+    double drifted = drift("radius", &expected);
+    assert_true(fabs(expected) > 1e-6 * l);
+    RELATIVE(drifted, expected, 1e-8);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_kept_with_history),
+        cmocka_unit_test(test_kept_by_the_other_laws),
+        cmocka_unit_test(test_drift_with_radius),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
