@@ -118,8 +118,8 @@ const bundle_entry *bundle_find(const bundle *b, const char *name)
     return NULL;
 }
 
-status bundle_get(const bundle *b, const char *path, const char *name, bundle_type type, int64_t rows, int64_t columns, const bundle_entry **out,
-                  failure *why)
+status bundle_get(const bundle *b, const char *path, const char *name, bundle_type type, int64_t rows, int64_t columns,
+                  const bundle_entry **out, failure *why)
 {
     const bundle_entry *entry = bundle_find(b, name);
     *out = NULL;
@@ -128,8 +128,8 @@ status bundle_get(const bundle *b, const char *path, const char *name, bundle_ty
     if (entry->type != type)
         return fail(why, STATUS_BAD_INPUT, "%s: entry '%s' holds %s where %s belong", path, name, type_name(entry->type), type_name(type));
     if ((rows >= 0 && entry->rows != rows) || (columns >= 0 && entry->columns != columns))
-        return fail(why, STATUS_BAD_INPUT, "%s: entry '%s' has %" PRId64 " x %" PRId64 " values where %" PRId64 " x %" PRId64 " belong", path, name,
-                    entry->rows, entry->columns, rows >= 0 ? rows : entry->rows, columns >= 0 ? columns : entry->columns);
+        return fail(why, STATUS_BAD_INPUT, "%s: entry '%s' has %" PRId64 " x %" PRId64 " values where %" PRId64 " x %" PRId64 " belong",
+                    path, name, entry->rows, entry->columns, rows >= 0 ? rows : entry->rows, columns >= 0 ? columns : entry->columns);
     *out = entry;
     return STATUS_OK;
 }
@@ -326,7 +326,8 @@ static status read_entry(hid_t dataset, const char *name, reading *r)
     H5Sclose(space);
     int wanted = type == BUNDLE_TEXT ? 1 : 2;
     if (rank != wanted || strlen(name) >= sizeof r->into->entry->name)
-        return fail(r->why, STATUS_BAD_INPUT, "%s: entry '%s' is damaged: it has %d dimensions in place of %d", r->path, name, rank, wanted);
+        return fail(r->why, STATUS_BAD_INPUT, "%s: entry '%s' is damaged: it has %d dimensions in place of %d", r->path, name, rank,
+                    wanted);
     int64_t rows = (int64_t)extent[0], columns = rank > 1 ? (int64_t)extent[1] : 1;
     /* A damaged size must not ask for all the memory there is: the values must be in the file. */
     size_t bytes = entry_bytes((bundle_type)type, rows, columns);

@@ -106,8 +106,8 @@ static status enough_space(const results *r, failure *why)
     double have = (double)disk.f_bavail * (double)disk.f_frsize;
     if (have >= need)
         return STATUS_OK;
-    return fail(why, STATUS_BAD_INPUT, "%s: the disk is full: %.1f MB free, and the first frame needs %.1f MB; free some space or write elsewhere",
-                r->path, 1e-6 * have, 1e-6 * need);
+    return fail(why, STATUS_BAD_INPUT, "%s: the disk is full: %.1f MB free, and the first frame needs %.1f MB; "
+                "free some space or write elsewhere", r->path, 1e-6 * have, 1e-6 * need);
 }
 
 static status write_xdmf(results *r, failure *why)
@@ -188,7 +188,8 @@ static status broken(results *r, status result, failure *why)
 
 static status write_samples(results *r, failure *why)
 {
-    bool done = series_append(&r->samples.step, r->pending, r->pending_step) && series_append(&r->samples.time, r->pending, r->pending_time);
+    bool done = series_append(&r->samples.step, r->pending, r->pending_step) &&
+                series_append(&r->samples.time, r->pending, r->pending_time);
     int at = 0;
     for (int k = 0; k < r->observable_count && done; k++) {
         size_t components = (size_t)r->observable[k].components;

@@ -148,7 +148,8 @@ static bool constant_create(results *r, int k, hid_t parent)
     field_shape(r, k, &rank, row);
     hid_t space = H5Screate_simple(rank - 1, row, NULL), creation = H5Pcreate(H5P_DATASET_CREATE);
     H5Pset_obj_track_times(creation, false);
-    hid_t dataset = H5Dcreate2(parent, field->name, field->integer ? H5T_STD_I32LE : H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    hid_t type = field->integer ? H5T_STD_I32LE : H5T_IEEE_F64LE;
+    hid_t dataset = H5Dcreate2(parent, field->name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
     r->field_series[k] = (series){.dataset = dataset, .type = field->integer ? H5T_NATIVE_INT32 : H5T_NATIVE_DOUBLE};
     H5Pclose(creation);
     H5Sclose(space);
@@ -323,7 +324,8 @@ static status contacts_open(results *r, hid_t file, failure *why)
     for (int k = 0; k < CONTACT_COLUMNS; k++) {
         const contact_column *c = &contact_columns[k];
         snprintf(path, sizeof path, "/contacts/%s", c->name);
-        if (!series_open(column_series(r, c), file, path, c->integer ? H5T_NATIVE_INT32 : H5T_NATIVE_DOUBLE, c->components > 1 ? 2 : 1, &three))
+        const hid_t type = c->integer ? H5T_NATIVE_INT32 : H5T_NATIVE_DOUBLE;
+        if (!series_open(column_series(r, c), file, path, type, c->components > 1 ? 2 : 1, &three))
             return misfit(r, path, why);
     }
     return STATUS_OK;

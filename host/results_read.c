@@ -88,7 +88,8 @@ static status read_shape(reader *r, int64_t frame, double *time, failure *why)
 {
     const char *const value = "/particles/all/position/value", *const clock = "/particles/all/position/time";
     if (!exists(r->file, value) || !exists(r->file, clock))
-        return fail(why, STATUS_BAD_INPUT, "%s: holds no /particles/all/position: not a results file, or written without positions", r->path);
+        return fail(why, STATUS_BAD_INPUT, "%s: holds no /particles/all/position: not a results file, or written without positions",
+                    r->path);
     hid_t dataset = H5Dopen2(r->file, value, H5P_DEFAULT), space = H5Dget_space(dataset);
     hsize_t extent[H5S_MAX_RANK] = {0};
     int rank = H5Sget_simple_extent_dims(space, extent, NULL);
@@ -102,8 +103,8 @@ static status read_shape(reader *r, int64_t frame, double *time, failure *why)
     if (r->frames == 0)
         return fail(why, STATUS_BAD_INPUT, "%s: holds no frames yet", r->path);
     if (frame < -1 || frame >= r->frames)
-        return fail(why, STATUS_BAD_INPUT, "%s: has no frame %" PRId64 ": frames go from 0 to %" PRId64 ", and -1 is the last", r->path, frame,
-                    r->frames - 1);
+        return fail(why, STATUS_BAD_INPUT, "%s: has no frame %" PRId64 ": frames go from 0 to %" PRId64 ", and -1 is the last",
+                    r->path, frame, r->frames - 1);
     r->frame = frame < 0 ? r->frames - 1 : frame;
     int64_t particles = r->count;
     double *times;

@@ -78,7 +78,8 @@ static const char *attribute_type(int components)
     }
 }
 
-static void put_frame(const writer *w, int field_count, const results_field *field, const results_field *position, int64_t frame, double time)
+static void put_frame(const writer *w, int field_count, const results_field *field, const results_field *position, int64_t frame,
+                      double time)
 {
     fprintf(w->out, "    <Grid Name=\"particles\" GridType=\"Uniform\">\n      <Time Value=\"%.17g\"/>\n", time);
     fprintf(w->out, "      <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%" PRId64 "\" NodesPerElement=\"1\"/>\n", w->count);
@@ -88,7 +89,8 @@ static void put_frame(const writer *w, int field_count, const results_field *fie
     for (int k = 0; k < field_count; k++) {
         if (&field[k] == position)
             continue;
-        fprintf(w->out, "      <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">\n", field[k].name, attribute_type(field[k].components));
+        fprintf(w->out, "      <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">\n", field[k].name,
+                attribute_type(field[k].components));
         put_data(w, &field[k], frame);
         fprintf(w->out, "      </Attribute>\n");
     }

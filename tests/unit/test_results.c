@@ -646,7 +646,8 @@ static void test_xdmf(void **state)
     assert_int_equal(times, 3);
     assert_non_null(strstr(text, "x&amp;y.h5:/particles/all/position/value"));
     assert_null(strstr(text, "x&y.h5"));
-    assert_non_null(strstr(text, "<DataItem Dimensions=\"7\" NumberType=\"Float\" Precision=\"8\" Format=\"HDF\">x&amp;y.h5:/particles/all/radius"));
+    assert_non_null(strstr(text, "<DataItem Dimensions=\"7\" NumberType=\"Float\" Precision=\"8\" Format=\"HDF\">"
+                                 "x&amp;y.h5:/particles/all/radius<"));
     assert_non_null(strstr(text, ">2 0 0  1 1 1  1 7 3<"));
     assert_non_null(strstr(text, "<DataItem Dimensions=\"3 7 3\""));
     assert_int_equal(access(in_folder("x&y.xdmf.tmp"), F_OK), -1);
