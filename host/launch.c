@@ -153,7 +153,6 @@ clast_launch launch_values(const simulation *sim)
     clast_launch v = {
         .dt = sim->dt,
         .travel2 = travel * travel,
-        .particle_stride = sim->stride,
         .record_stride = sim->table.record_stride,
         .particle_count = (clast_i32)sim->count,
         .first_wall_group = sim->table.wall_base / CLAST_BLOCK,

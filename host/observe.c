@@ -112,7 +112,7 @@ status observe_contact_sums(simulation *sim, contact_sums *out, failure *why)
 
 typedef struct record_arrays {
     int32_t *owner, *other, *id;
-    double *overlap, *radius, *force[3], *torque[3], *position[3];
+    double *overlap, *radius, *force[3], *torque[3], *position; /* position: [grain][3] */
 } record_arrays;
 
 static void free_records(record_arrays *r)
@@ -122,10 +122,10 @@ static void free_records(record_arrays *r)
     free(r->id);
     free(r->overlap);
     free(r->radius);
+    free(r->position);
     for (int c = 0; c < 3; c++) {
         free(r->force[c]);
         free(r->torque[c]);
-        free(r->position[c]);
     }
 }
 
@@ -158,9 +158,9 @@ static status read_records(simulation *sim, record_arrays *r, failure *why)
     TRY(read_ints(sim, t->other[t->now], t->record_count, &r->other, why));
     TRY(read_ints(sim, store_find(sim, "id")->mem, sim->stride, &r->id, why));
     TRY(read_doubles(sim, store_find(sim, "radius")->mem, 0, sim->stride, &r->radius, why));
+    TRY(read_doubles(sim, store_find(sim, "position")->mem, 0, 3 * sim->stride, &r->position, why));
     for (int c = 0; c < 3; c++) {
         TRY(read_component(sim, force, c, &r->force[c], why));
-        TRY(read_doubles(sim, store_find(sim, "position")->mem, c * sim->stride, sim->stride, &r->position[c], why));
         if (torque)
             TRY(read_component(sim, torque->mem, 3 + c, &r->torque[c], why));
     }
@@ -171,10 +171,10 @@ static status read_records(simulation *sim, record_arrays *r, failure *why)
 static void torque_without_spin(const simulation *sim, const record_arrays *r, int64_t k, const clast_face *face, double *torque)
 {
     double arm[3];
-    int32_t i = r->owner[k];
+    int64_t i = r->owner[k];
     (void)sim;
     for (int c = 0; c < 3; c++)
-        arm[c] = r->position[c][i] - face->pivot[c];
+        arm[c] = r->position[3 * i + c] - face->pivot[c];
     for (int c = 0; c < 3; c++)
         torque[c] = -(arm[(c + 1) % 3] * r->force[(c + 2) % 3][k] - arm[(c + 2) % 3] * r->force[(c + 1) % 3][k]);
 }
@@ -288,7 +288,7 @@ status observe_virial(simulation *sim, double *stress, failure *why)
         double branch[3];
         for (int c = 0; c < 3; c++) {
             double length = d->given && d->periodic[c] ? d->high_m[c] - d->low_m[c] : 0.0;
-            branch[c] = r.position[c][r.owner[k]] - r.position[c][r.other[k]];
+            branch[c] = r.position[3 * (int64_t)r.owner[k] + c] - r.position[3 * (int64_t)r.other[k] + c];
             if (length > 0.0)
                 branch[c] -= length * rint(branch[c] / length);
         }
@@ -307,18 +307,16 @@ status observe_field(simulation *sim, const char *name, double **out, failure *w
         return fail(why, STATUS_ERROR, "internal: no field named %s", name);
     int components = stored->field->components;
     int32_t *id = NULL;
-    double *column = NULL;
+    double *rows = NULL;
     *out = malloc(sizeof **out * (size_t)(sim->id_count * components + 1));
     status result = *out ? read_ints(sim, store_find(sim, "id")->mem, sim->stride, &id, why) : fail(why, STATUS_ERROR, "out of memory");
     for (int64_t n = 0; result == STATUS_OK && n < sim->id_count * components; n++)
         (*out)[n] = NAN;
-    for (int c = 0; c < components && result == STATUS_OK; c++) {
-        result = read_doubles(sim, stored->mem, c * sim->stride, sim->stride, &column, why);
-        for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++)
-            (*out)[(int64_t)id[i] * components + c] = column[i];
-        free(column);
-        column = NULL;
-    }
+    if (result == STATUS_OK)
+        result = read_doubles(sim, stored->mem, 0, components * sim->stride, &rows, why);
+    for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++)
+        memcpy(*out + (int64_t)id[i] * components, rows + i * components, sizeof *rows * (size_t)components);
+    free(rows);
     free(id);
     return result;
 }

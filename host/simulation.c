@@ -49,15 +49,7 @@ static status check_periods(const simulation *sim, failure *why)
 
 static status upload_vectors(simulation *sim, const char *name, const double (*value)[3], int64_t count, failure *why)
 {
-    double *column = calloc((size_t)sim->stride, sizeof *column);
-    status result = column ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
-    for (int c = 0; result == STATUS_OK && c < 3; c++) {
-        for (int64_t i = 0; i < count; i++)
-            column[i] = value[i][c];
-        result = store_write(sim, store_find(sim, name)->mem, 8 * (uint64_t)(c * sim->stride), 8 * (uint64_t)sim->stride, column, why);
-    }
-    free(column);
-    return result;
+    return store_write(sim, store_find(sim, name)->mem, 0, 24 * (uint64_t)count, value, why);
 }
 
 /* Grains that pad the last block have unit mass and radius, so that nothing divides by zero. */
@@ -100,8 +92,9 @@ static status upload_bed(simulation *sim, const bed *bed, failure *why)
     stored_field *orientation = store_find(sim, "orientation");
     if (!orientation)
         return STATUS_OK;
-    const double one = 1.0;
-    TRY_CL(clEnqueueFillBuffer(sim->device->queue, orientation->mem, &one, sizeof one, 0, 8 * (size_t)sim->stride, 0, NULL, NULL), "orientation");
+    const double upright[4] = {1.0, 0.0, 0.0, 0.0};
+    TRY_CL(clEnqueueFillBuffer(sim->device->queue, orientation->mem, upright, sizeof upright, 0, sizeof upright * (size_t)sim->stride, 0, NULL, NULL),
+           "orientation");
     return STATUS_OK;
 }
 
@@ -129,6 +122,8 @@ static status create_buffers(simulation *sim, failure *why)
     TRY(store_fields(sim, why));
     TRY(store_buffer(sim, &sim->built_position, field_bytes(sim, &field_position), "positions at the last table", why));
     TRY(store_fill(sim, sim->built_position, field_bytes(sim, &field_position), why));
+    if (store_find(sim, "orientation"))
+        TRY(store_buffer(sim, &sim->scratch4, field_bytes(sim, &field_orientation), "sorting", why));
     TRY(store_buffer(sim, &sim->where, 4 * (uint64_t)sim->stride, "indices of ids", why));
     TRY(store_buffer(sim, &sim->control, sizeof(clast_control), "control words", why));
     int width = live_constant_count(&sim->all);
@@ -175,7 +170,7 @@ void simulation_free(simulation *sim)
     table_free(sim);
     for (int f = 0; f < sim->field_count; f++)
         store_release(sim, &sim->field[f].mem, 0);
-    cl_mem *const rest[] = {&sim->where, &sim->partial, &sim->control, &sim->faces, &sim->movers, &sim->constants, &sim->built_position};
+    cl_mem *const rest[] = {&sim->where, &sim->partial, &sim->control, &sim->faces, &sim->movers, &sim->constants, &sim->built_position, &sim->scratch4};
     for (size_t m = 0; m < sizeof rest / sizeof *rest; m++)
         store_release(sim, rest[m], 0);
     free(sim->wall_body);
@@ -281,22 +276,10 @@ status simulation_choose_drift(simulation *sim, failure *why)
 
 /* ---- stages ---- */
 
-static status upload_movers(simulation *sim, failure *why)
+/* Grains that a group holds or moves, and the velocities that they have from now on. */
+static void set_movers(const simulation *sim, int32_t *id, const double (*x)[3], double (*v)[3])
 {
-    stored_field *mover = store_find(sim, "mover");
-    if (!mover)
-        return STATUS_OK;
-    int32_t *id = malloc(sizeof *id * (size_t)sim->stride);
-    double *column[3] = {NULL, NULL, NULL};
-    status result = id ? store_read(sim, store_find(sim, "id")->mem, 0, 4 * (uint64_t)sim->stride, id, why) : fail(why, STATUS_ERROR, "out of memory");
-    for (int c = 0; c < 3 && result == STATUS_OK; c++) {
-        column[c] = malloc(sizeof **column * (size_t)sim->stride * 2);
-        result = column[c] ? store_read(sim, store_find(sim, "position")->mem, 8 * (uint64_t)(c * sim->stride), 8 * (uint64_t)sim->stride, column[c], why)
-                           : fail(why, STATUS_ERROR, "out of memory");
-        if (result == STATUS_OK)
-            result = store_read(sim, store_find(sim, "velocity")->mem, 8 * (uint64_t)(c * sim->stride), 8 * (uint64_t)sim->stride, column[c] + sim->stride, why);
-    }
-    for (int64_t i = 0; i < sim->stride && result == STATUS_OK; i++) {
+    for (int64_t i = 0; i < sim->stride; i++) {
         int group = i < sim->count ? sim->group_of_id[id[i]] : -1;
         id[i] = group >= 0 && sim->group_held[group] ? group : -1;
         if (id[i] < 0)
@@ -304,18 +287,35 @@ static status upload_movers(simulation *sim, failure *why)
         body_pose pose = moving_body_pose(&sim->group_body[group], sim->time);
         double arm[3];
         for (int c = 0; c < 3; c++)
-            arm[c] = column[c][i] - pose.pivot[c];
+            arm[c] = x[i][c] - pose.pivot[c];
         for (int c = 0; c < 3; c++)
-            column[c][sim->stride + i] = pose.velocity[c] + pose.spin[(c + 1) % 3] * arm[(c + 2) % 3] - pose.spin[(c + 2) % 3] * arm[(c + 1) % 3];
+            v[i][c] = pose.velocity[c] + pose.spin[(c + 1) % 3] * arm[(c + 2) % 3] - pose.spin[(c + 2) % 3] * arm[(c + 1) % 3];
+    }
+}
+
+static status upload_movers(simulation *sim, failure *why)
+{
+    stored_field *mover = store_find(sim, "mover");
+    if (!mover)
+        return STATUS_OK;
+    uint64_t n = (uint64_t)sim->stride;
+    cl_mem position = store_find(sim, "position")->mem, velocity = store_find(sim, "velocity")->mem;
+    int32_t *id = malloc(n * sizeof *id);
+    double(*x)[3] = malloc(n * sizeof *x), (*v)[3] = malloc(n * sizeof *v);
+    status result = id && x && v ? store_read(sim, store_find(sim, "id")->mem, 0, 4 * n, id, why) : fail(why, STATUS_ERROR, "out of memory");
+    if (result == STATUS_OK)
+        result = store_read(sim, position, 0, 24 * n, x, why);
+    if (result == STATUS_OK)
+        result = store_read(sim, velocity, 0, 24 * n, v, why);
+    if (result == STATUS_OK) {
+        set_movers(sim, id, (const double(*)[3])x, v);
+        result = store_write(sim, mover->mem, 0, 4 * n, id, why);
     }
     if (result == STATUS_OK)
-        result = store_write(sim, mover->mem, 0, 4 * (uint64_t)sim->stride, id, why);
-    for (int c = 0; c < 3; c++) {
-        if (result == STATUS_OK)
-            result = store_write(sim, store_find(sim, "velocity")->mem, 8 * (uint64_t)(c * sim->stride), 8 * (uint64_t)sim->stride, column[c] + sim->stride, why);
-        free(column[c]);
-    }
+        result = store_write(sim, velocity, 0, 24 * n, v, why);
     free(id);
+    free(x);
+    free(v);
     return result;
 }
 

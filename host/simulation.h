@@ -67,9 +67,9 @@ typedef struct simulation {
 
     int64_t id_count;       /* grains of the scene */
     int64_t count;          /* grains still there */
-    int64_t stride;         /* elements a component, a multiple of the block */
+    int64_t stride;         /* grains that fields have room for: `id_count` up to a whole block; components of a grain stand together */
     bool particles_stale;   /* `where` lags behind */
-    cl_mem where, partial, control, faces, movers, constants, built_position;
+    cl_mem where, partial, control, faces, movers, constants, built_position, scratch4;
     int64_t partial_capacity;
     contact_table table;
 

@@ -21,21 +21,13 @@ static status save_field(simulation *sim, const stored_field *stored, const int3
     char name[64];
     snprintf(name, sizeof name, "particles/%s", field->name);
     bool real = field->type == FIELD_REAL;
-    void *rows = bundle_add(out, name, real ? BUNDLE_F64 : BUNDLE_I32, sim->id_count, field->components, NULL);
-    for (int c = 0; c < field->components; c++) {
-        void *column = NULL;
-        status result = read_column(sim, stored->mem, c * sim->stride, sim->stride, real ? 8 : 4, &column, why);
-        for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++) {
-            int64_t to = (int64_t)id[i] * field->components + c;
-            if (real)
-                ((double *)rows)[to] = ((double *)column)[i];
-            else
-                ((int32_t *)rows)[to] = ((int32_t *)column)[i];
-        }
-        free(column);
-        TRY(result);
-    }
-    return STATUS_OK;
+    size_t size = (real ? sizeof(double) : sizeof(int32_t)) * (size_t)field->components;
+    char *to = bundle_add(out, name, real ? BUNDLE_F64 : BUNDLE_I32, sim->id_count, field->components, NULL), *rows = NULL;
+    status result = read_column(sim, stored->mem, 0, sim->stride, (int)size, (void **)&rows, why);
+    for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++)
+        memcpy(to + size * (size_t)id[i], rows + size * (size_t)i, size);
+    free(rows);
+    return result;
 }
 
 /* Records with any history: ids of the owner and the other (or face, as -1 - face), and all components side by side. */
@@ -145,19 +137,16 @@ static status load_field(simulation *sim, const stored_field *stored, const bund
     bool real = field->type == FIELD_REAL;
     snprintf(name, sizeof name, "particles/%s", field->name);
     TRY(bundle_get(in, path, name, real ? BUNDLE_F64 : BUNDLE_I32, sim->id_count, field->components, &entry, why));
-    size_t size = real ? sizeof(double) : sizeof(int32_t);
-    char *column = malloc(size * (size_t)sim->count + 1);
-    if (!column)
+    size_t size = (real ? sizeof(double) : sizeof(int32_t)) * (size_t)field->components;
+    char *rows = malloc(size * (size_t)sim->count + 1);
+    if (!rows)
         return fail(why, STATUS_ERROR, "out of memory");
-    status result = STATUS_OK;
-    for (int c = 0; c < field->components && result == STATUS_OK; c++) {
-        int64_t to = 0;
-        for (int64_t n = 0; n < sim->id_count; n++)
-            if (present[n])
-                memcpy(column + size * (size_t)to++, (const char *)entry->data + size * (size_t)(n * field->components + c), size);
-        result = store_write(sim, stored->mem, size * (uint64_t)(c * sim->stride), size * (uint64_t)sim->count, column, why);
-    }
-    free(column);
+    size_t to = 0;
+    for (int64_t n = 0; n < sim->id_count; n++)
+        if (present[n])
+            memcpy(rows + size * to++, (const char *)entry->data + size * (size_t)n, size);
+    status result = store_write(sim, stored->mem, 0, size * (uint64_t)sim->count, rows, why);
+    free(rows);
     return result;
 }
 

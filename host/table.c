@@ -166,18 +166,14 @@ static status sort_grains(simulation *sim, const clast_launch *launch, failure *
     return STATUS_OK;
 }
 
+/* By way of the positions at the last table, which are written anew in the end; an orientation, of four, by way of twice its room. */
 static status permute_real(simulation *sim, const clast_launch *launch, cl_mem mem, int components, failure *why)
 {
     cl_kernel kernel = launch_kernel(sim, "table_permute_real");
-    for (int first = 0; first < components; first += 3) {
-        int some = components - first < 3 ? components - first : 3;
-        TRY(launch_set(kernel, "table_permute_real", why, "Lmmmii", launch, sim->table.work[WORK_C], mem, sim->built_position, first, some));
-        TRY(launch_run(sim, kernel, "table_permute_real", sim->count, GROUP, why));
-        for (int c = 0; c < some; c++)
-            TRY(store_copy(sim, sim->built_position, mem, 8 * (uint64_t)(c * sim->stride), 8 * (uint64_t)((first + c) * sim->stride),
-                           8 * (uint64_t)sim->count, why));
-    }
-    return STATUS_OK;
+    cl_mem scratch = components > 3 ? sim->scratch4 : sim->built_position;
+    TRY(launch_set(kernel, "table_permute_real", why, "Lmmmi", launch, sim->table.work[WORK_C], mem, scratch, components));
+    TRY(launch_run(sim, kernel, "table_permute_real", sim->count, GROUP, why));
+    return store_copy(sim, scratch, mem, 0, 0, 8 * (uint64_t)(sim->count * components), why);
 }
 
 static status permute_fields(simulation *sim, const clast_launch *launch, failure *why)

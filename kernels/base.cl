@@ -62,7 +62,16 @@ INLINE vec3 from3(const clast_f64 *a)
     return v3((real)a[0], (real)a[1], (real)a[2]);
 }
 
-/* Component c of a field of `stride` elements a component. */
+/* Fields of grains keep the components of one grain together: a pair reads a grain that stands anywhere, and finds it in one or two cache
+ * lines (docs/performance.md). */
+#define GRAIN3(field, i) v3((field)[3 * (size_t)(i)], (field)[3 * (size_t)(i) + 1], (field)[3 * (size_t)(i) + 2])
+#define SET_GRAIN3(field, i, v)               \
+    do {                                      \
+        (field)[3 * (size_t)(i)] = (v).x;     \
+        (field)[3 * (size_t)(i) + 1] = (v).y; \
+        (field)[3 * (size_t)(i) + 2] = (v).z; \
+    } while (0)
+/* Fields of records are read one record after the other, a component each: component c of a field of `stride` elements a component. */
 #define AT(field, stride, c, k) (field)[(size_t)(c) * (size_t)(stride) + (size_t)(k)]
 #define LOAD3(field, stride, k) v3(AT(field, stride, 0, k), AT(field, stride, 1, k), AT(field, stride, 2, k))
 #define STORE3(field, stride, k, v)        \

@@ -25,8 +25,7 @@ typedef struct clast_launch {
     clast_f64 low[3];        /* domain, m */
     clast_f64 high[3];
     clast_f64 length[3];     /* periodic lengths; 0 where not periodic */
-    clast_i64 particle_stride; /* elements between the components of a particle field */
-    clast_i64 record_stride;   /* elements between the components of a record field */
+    clast_i64 record_stride;   /* elements between the components of a field of records */
     clast_i32 particle_count;
     clast_i32 first_wall_group; /* work-groups of the pair stage from here on hold wall records */
     clast_i32 step;             /* counts from the start of the batch */

@@ -1,13 +1,15 @@
 /* orientation: unit quaternions, turned by the spin of the step and normalised. (TM Eq. 45, the Rodrigues vector, is singular at half a
  * turn.) Reads and writes orientation w x y z. */
 #define ORIENTATION_PARTICLE_FIELDS(READ, WRITE) WRITE(real, orientation)
-#define ORIENTATION_ADVANCE(launch, i, w)                                                                               \
-    do {                                                                                                                \
-        quaternion q = {AT(orientation, (launch)->particle_stride, 0, i), LOAD3(orientation + (launch)->particle_stride, \
-                                                                                (launch)->particle_stride, i)};         \
-        q = orientation_turn(q, w, (real)(launch)->dt);                                                                 \
-        AT(orientation, (launch)->particle_stride, 0, i) = q.w;                                                         \
-        STORE3(orientation + (launch)->particle_stride, (launch)->particle_stride, i, q.v);                             \
+#define ORIENTATION_ADVANCE(launch, i, spin)                       \
+    do {                                                           \
+        __global real *now = orientation + 4 * (size_t)(i);        \
+        quaternion q = {now[0], {now[1], now[2], now[3]}};         \
+        q = orientation_turn(q, (spin), (real)(launch)->dt);           \
+        now[0] = q.w;                                              \
+        now[1] = q.v.x;                                            \
+        now[2] = q.v.y;                                            \
+        now[3] = q.v.z;                                            \
     } while (0)
 
 typedef struct quaternion {

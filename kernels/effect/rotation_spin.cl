@@ -4,8 +4,8 @@
 #define ROTATION_PARTICLE_FIELDS(READ, WRITE) WRITE(real, spin) READ(real, torque)
 #define ROTATION_OBSERVE_FIELDS(READ, WRITE) READ(real, spin)
 #define ROTATION_LIMIT_FIELDS(READ, WRITE) READ(real, torque)
-#define ROTATION_LOAD(launch, i) LOAD3(spin, (launch)->particle_stride, i)
-#define ROTATION_STORE(launch, i, w) STORE3(spin, (launch)->particle_stride, i, w)
+#define ROTATION_LOAD(launch, i) GRAIN3(spin, i)
+#define ROTATION_STORE(launch, i, w) SET_GRAIN3(spin, i, w)
 #define ROTATION_STORE_TORQUE(launch, k, owner_torque, other_torque)                   \
     do {                                                                               \
         STORE3(torque, (launch)->record_stride, k, owner_torque);                      \

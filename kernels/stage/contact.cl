@@ -18,9 +18,8 @@ INLINE void contact_complete(contact *c)
 INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR_DECLARE)
 {
     int i = owner[k], j = other[k];
-    long ps = launch->particle_stride;
-    vec3 d = periodic_nearest(launch, sub(LOAD3(position, ps, j), LOAD3(position, ps, i)));
-    vec3 u = sub(LOAD3(velocity, ps, i), LOAD3(velocity, ps, j));
+    vec3 d = periodic_nearest(launch, sub(GRAIN3(position, j), GRAIN3(position, i)));
+    vec3 u = sub(GRAIN3(velocity, i), GRAIN3(velocity, j));
     real d2 = dot3(d, d), sum;
     c->radius_i = radius[i];
     c->radius_j = radius[j];
@@ -51,8 +50,7 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
 INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_touch *touch PAIR_DECLARE)
 {
     int i = owner[k];
-    long ps = launch->particle_stride;
-    vec3 x = LOAD3(position, ps, i), v = LOAD3(velocity, ps, i);
+    vec3 x = GRAIN3(position, i), v = GRAIN3(velocity, i);
     c->radius_i = radius[i];
     c->radius_j = c->radius_i;
     c->spin_i = ROTATION_LOAD(launch, i);

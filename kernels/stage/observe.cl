@@ -18,7 +18,7 @@ __kernel void observe_particles(const clast_launch launch, __global const int *r
         int i = where[n];
         if (i < 0)
             continue;
-        vec3 x = LOAD3(position, launch.particle_stride, i), v = LOAD3(velocity, launch.particle_stride, i);
+        vec3 x = GRAIN3(position, i), v = GRAIN3(velocity, i);
         vec3 w = ROTATION_LOAD(&launch, i);
         real m = mass[i], inertia = R(0.4) * m * radius[i] * radius[i];
         vec3 orbital = cross3(x, v);
@@ -250,7 +250,7 @@ __kernel void guard_particles(const clast_launch launch, __global const real *re
     int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
     double bad = -1.0, fastest = -1.0, left = -1.0, most = 0.0;
     for (int i = first; i < end; i++) {
-        vec3 x = LOAD3(position, launch.particle_stride, i), v = LOAD3(velocity, launch.particle_stride, i);
+        vec3 x = GRAIN3(position, i), v = GRAIN3(velocity, i);
         double speed2 = dot3(v, v);
         if (!guard_is_number(x.x + x.y + x.z) || !guard_is_number(speed2)) {
             if (bad < 0.0)
@@ -281,7 +281,7 @@ __kernel void guard_records(const clast_launch launch, __global const int *restr
     double most = 0.0, where = -1.0;
     for (int k = first; k < end; k++) {
         int i = owner[k], j = other[k];
-        vec3 d = periodic_nearest(&launch, sub(LOAD3(position, launch.particle_stride, j), LOAD3(position, launch.particle_stride, i)));
+        vec3 d = periodic_nearest(&launch, sub(GRAIN3(position, j), GRAIN3(position, i)));
         double smaller = fmin(radius[i], radius[j]), ratio = (radius[i] + radius[j] - sqrt(dot3(d, d))) / smaller;
         if (ratio > most) {
             most = ratio;

@@ -27,11 +27,10 @@ INLINE void particle_gather(const clast_launch *launch, int block, int lane, vec
 /* One step of grain i; returns the square of its displacement since the table was built, relative to the common one. */
 INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t PARTICLE_DECLARE)
 {
-    long ps = launch->particle_stride;
     real dt = (real)launch->dt, r = radius[i];
     real m = mass[i], inertia = R(0.4) * m * r * r;
     int mover_i = MOTION_GRAIN(i);
-    vec3 x = LOAD3(position, ps, i), v = LOAD3(velocity, ps, i), w = ROTATION_LOAD(launch, i);
+    vec3 x = GRAIN3(position, i), v = GRAIN3(velocity, i), w = ROTATION_LOAD(launch, i);
     __global const clast_mover *row = MOTION_ROW(launch);
     f = body_force(add_scaled(f, m, from3(launch->gravity)), v, m);
     t = body_force(t, w, inertia);
@@ -40,11 +39,11 @@ INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t P
     v1 = motion_velocity(row, mover_i, v1, x1);
     vec3 w1 = motion_spin(row, mover_i, rotation_advance(w, t, inertia, dt));
     x1 = periodic_wrap(launch, x1);
-    STORE3(position, ps, i, x1);
-    STORE3(velocity, ps, i, v1);
+    SET_GRAIN3(position, i, x1);
+    SET_GRAIN3(velocity, i, v1);
     ROTATION_STORE(launch, i, w1);
     ORIENTATION_ADVANCE(launch, i, w1);
-    vec3 moved = periodic_nearest(launch, sub(sub(x1, LOAD3(built_position, ps, i)), from3(launch->drift)));
+    vec3 moved = periodic_nearest(launch, sub(sub(x1, GRAIN3(built_position, i)), from3(launch->drift)));
     return dot3(moved, moved);
 }
 

@@ -37,7 +37,7 @@ __kernel void table_bin(const clast_launch launch, __global const clast_grid *re
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
-    vec3 x = LOAD3(position, launch.particle_stride, i);
+    vec3 x = GRAIN3(position, i);
     int cell = table_cell(grid, table_level(grid, radius[i]), x);
     bool inside = x.x >= (real)launch.low[0] && x.x <= (real)launch.high[0] && x.y >= (real)launch.low[1] && x.y <= (real)launch.high[1] &&
                   x.z >= (real)launch.low[2] && x.z <= (real)launch.high[2];
@@ -72,14 +72,14 @@ __kernel void table_order_cells(__global const uint *restrict cell_start, __glob
 }
 
 __kernel void table_permute_real(const clast_launch launch, __global const int *restrict order, __global const real *restrict from,
-                                 __global real *restrict to, const int first_component, const int components)
+                                 __global real *restrict to, const int components)
 {
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
-    int o = order[i];
+    size_t old = (size_t)order[i] * components, now = (size_t)i * components;
     for (int c = 0; c < components; c++)
-        AT(to, launch.particle_stride, c, i) = AT(from, launch.particle_stride, first_component + c, o);
+        to[now + c] = from[old + c];
 }
 
 __kernel void table_permute_int(const clast_launch launch, __global const int *restrict order, __global const int *restrict from,
@@ -95,7 +95,7 @@ INLINE bool table_pairs(const clast_launch *launch, real skin, int i, vec3 xi, r
                         __global const real *restrict radius, __global const int *restrict id)
 {
     real rj = radius[j];
-    vec3 d = periodic_nearest(launch, sub(LOAD3(position, launch->particle_stride, j), xi));
+    vec3 d = periodic_nearest(launch, sub(GRAIN3(position, j), xi));
     real reach = ri + rj + skin;
     bool owns = rj > ri || (rj == ri && id[j] > id_i);
     return j != i && owns && dot3(d, d) < reach * reach;
@@ -137,7 +137,7 @@ __kernel void table_count(const clast_launch launch, __global const clast_grid *
         own_count[i] = 0;
         return;
     }
-    vec3 xi = LOAD3(position, launch.particle_stride, i);
+    vec3 xi = GRAIN3(position, i);
     real ri = radius[i], skin = (real)grid->skin;
     int id_i = id[i];
     uint found = 0;
@@ -157,7 +157,7 @@ __kernel void table_fill(const clast_launch launch, __global const clast_grid *r
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
-    vec3 xi = LOAD3(position, launch.particle_stride, i);
+    vec3 xi = GRAIN3(position, i);
     real ri = radius[i], skin = (real)grid->skin;
     int id_i = id[i];
     uint first = own_start[i], k = first;

@@ -24,7 +24,7 @@ __kernel void table_count_walls(const clast_launch launch, __global const clast_
     int i = get_global_id(0);
     uint found = 0;
     if (i < launch.particle_count) {
-        vec3 x = LOAD3(position, launch.particle_stride, i);
+        vec3 x = GRAIN3(position, i);
         for (int f = 0; f < launch.face_count; f++)
             found += table_reaches(faces + f, x, radius[i] + (real)grid->skin) ? 1 : 0;
         slot_count[i] += found;
@@ -39,7 +39,7 @@ __kernel void table_fill_walls(const clast_launch launch, __global const clast_g
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
-    vec3 x = LOAD3(position, launch.particle_stride, i);
+    vec3 x = GRAIN3(position, i);
     uint k = wall_base + wall_start[i];
     for (int f = 0; f < launch.face_count; f++)
         if (table_reaches(faces + f, x, radius[i] + (real)grid->skin)) {

@@ -125,13 +125,7 @@ static inline double *case_field(simulation *sim, const char *name)
     stored_field *stored = store_find(sim, name);
     assert_non_null(stored);
     int components = stored->field->components;
-    double *all = case_read(sim, stored->mem, 0, sim->stride * components, sizeof *all),
-           *rows = malloc(sizeof *rows * (size_t)(sim->stride * components));
-    assert_non_null(rows);
-    for (int64_t i = 0; i < sim->stride; i++)
-        for (int c = 0; c < components; c++)
-            rows[i * components + c] = all[c * sim->stride + i];
-    free(all);
+    double *rows = case_read(sim, stored->mem, 0, sim->stride * components, sizeof *rows);
     return rows;
 }
 
