@@ -210,10 +210,16 @@ static status fit_rows(simulation *sim, failure *why)
     return STATUS_OK;
 }
 
+/* Time after so many more steps, to the same bits whatever the batches. */
+static double time_after(const simulation *sim, int64_t steps)
+{
+    return sim->segment_time + (double)(sim->step + steps - sim->segment_step) * sim->dt;
+}
+
 static status write_rows(simulation *sim, int rows, failure *why)
 {
     for (int row = 0; row < rows; row++) {
-        double time = sim->time + (double)row * sim->dt;
+        double time = time_after(sim, row);
         clast_face *face = sim->face_rows + row * sim->face_count;
         for (int w = 0; w < sim->scene->wall_count; w++) {
             body_pose pose = moving_body_pose(&sim->wall_body[w], time);
@@ -497,7 +503,7 @@ status simulation_advance(simulation *sim, int64_t steps, failure *why)
             TRY(run_batch(sim, allowed, &done, &rebuild, why));
         sim->step += done;
         sim->stage_steps += done;
-        sim->time = sim->segment_time + (double)(sim->step - sim->segment_step) * sim->dt;
+        sim->time = time_after(sim, 0);
         steps -= done;
         if (rebuild) {
             adapt_skin(sim);
