@@ -10,8 +10,8 @@
 #define PROBE_WARM_UP 20
 #define PROBE_STEPS   200
 
-/* Records a grain in a frictional bed at rest, walls and what the skin lists included, and what a record takes in the table: owner and other
- * in two generations, match, and two slots in two generations. */
+/* Records a grain in a frictional bed at rest, walls and what the skin lists included, and what a record takes in the table: owner and
+ * other in two generations, match, and two slots in two generations. */
 #define PACKED_RECORDS     4.0
 #define TABLE_RECORD_BYTES 36.0
 

@@ -1,6 +1,6 @@
-/* Which of the given properties matter, found by trying: a property is used when another value of it would change a constant of a contact, or
- * which laws are live, in some stage. That needs no list of what each law reads beside the laws themselves, and it also finds values that
- * closer entries hide from every contact. */
+/* Which of the given properties matter, found by trying: a property is used when another value of it would change a constant of a
+ * contact, or which laws are live, in some stage. That needs no list of what each law reads beside the laws themselves, and it also finds
+ * values that closer entries hide from every contact. */
 #include "parameter.h"
 #include "plan_data.h"
 #include "property.h"

@@ -1,6 +1,6 @@
-/* A grain that leans on a frictionless wall is in the very state of one that leans on its own mirror image: half the effective modulus, half
- * the effective radius and twice the overlap give the same Hertz force. So a part that has settled between frictionless sides, as high as
- * the whole bed, fits its mirror images without a gap and stays at rest among them. */
+/* A grain that leans on a frictionless wall is in the very state of one that leans on its own mirror image: half the effective modulus,
+ * half the effective radius and twice the overlap give the same Hertz force. So a part that has settled between frictionless sides, as high
+ * as the whole bed, fits its mirror images without a gap and stays at rest among them. */
 #include "settled_bed.h"
 
 #include "bundle.h"
