@@ -21,11 +21,11 @@ typedef struct quaternion {
  * the product form tan(a/2) ~ Pade; the result is normalised, so only the direction of the turn matters. */
 INLINE quaternion orientation_turn(quaternion q, vec3 spin, real dt)
 {
-    vec3 half = scale(R(0.5) * dt, spin);
-    real h2 = dot3(half, half);
+    vec3 halved = scale(R(0.5) * dt, spin);
+    real h2 = dot3(halved, halved);
     /* tan(h)/h = (945 - 105 h^2 + h^4)/(945 - 420 h^2 + 15 h^4) */
     real t = (R(945.0) - R(105.0) * h2 + h2 * h2) / (R(945.0) - R(420.0) * h2 + R(15.0) * h2 * h2);
-    vec3 b = scale(t, half);
+    vec3 b = scale(t, halved);
     quaternion r = {q.w - dot3(b, q.v), add(add_scaled(q.v, q.w, b), cross3(b, q.v))};
     real norm = R(1.0) / sqrt(r.w * r.w + dot3(r.v, r.v));
     r.w *= norm;
