@@ -111,7 +111,7 @@ status launch_open(simulation *sim, failure *why)
     static const char *const names[] = {"pair_stage",       "pair_probe",      "particle_stage",    "scan_chunks",       "scan_sums",
                                         "scan_write",       "table_bin",       "table_order",       "table_order_cells", "table_permute_real",
                                         "table_permute_int", "table_count",    "table_fill",        "table_pad",         "table_widths",
-                                        "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",
+                                        "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls"};
     sim->kernel_count = 0;

@@ -427,23 +427,45 @@ status simulation_count_leavers(simulation *sim, int64_t kept, failure *why)
     return result;
 }
 
-/* A skin that balances the pairs it adds against the tables it saves (docs/performance.md): pairs grow as 1 + 1.5 s/r, a table costs about 15
- * steps and lasts s/(2 u) steps, u the displacement a step that the last one saw. */
+/* The skin that balances the pairs it adds against the tables it saves, for grains that travel `used` a step (docs/performance.md): a step
+ * costs about 1 + 2.7 s/r, a table about 8 steps, and it lasts s/(2 used) steps. */
+static double best_skin(const simulation *sim, double used)
+{
+    double best = fmin(fmax(sqrt(6.0 * used * sim->mean_radius), 0.02 * sim->mean_radius), 0.6 * sim->mean_radius);
+    const domain *d = &sim->scene->domain;
+    for (int c = 0; d->given && c < 3; c++)
+        if (d->periodic[c])
+            best = fmin(best, 0.5 * (d->high_m[c] - d->low_m[c]) - 2.0 * sim->radius_max);
+    return best;
+}
+
 static void adapt_skin(simulation *sim)
 {
     contact_table *t = &sim->table;
     int64_t lasted = sim->step - sim->rebuild_step;
     if (t->skin_is_given || !t->built || lasted <= 0)
         return;
-    double used = 0.5 * t->skin / (double)lasted;
-    double best = sqrt(33.0 * used * sim->mean_radius);
-    best = fmin(fmax(best, t->skin / 1.5), t->skin * 1.5);
-    best = fmin(fmax(best, 0.05 * sim->mean_radius), 0.6 * sim->mean_radius);
-    const domain *d = &sim->scene->domain;
-    for (int c = 0; d->given && c < 3; c++)
-        if (d->periodic[c])
-            best = fmin(best, 0.5 * (d->high_m[c] - d->low_m[c]) - 2.0 * sim->radius_max);
-    t->skin = best;
+    double best = best_skin(sim, 0.5 * t->skin / (double)lasted);
+    t->skin = fmin(fmax(best, t->skin / 1.5), t->skin * 1.5);
+}
+
+/* A table that lasts long has too many pairs: a smaller skin may do. Says so by *rebuild. */
+static status look_at_skin(simulation *sim, bool *rebuild, failure *why)
+{
+    contact_table *t = &sim->table;
+    int64_t lasted = sim->step - sim->rebuild_step;
+    double travel;
+    *rebuild = false;
+    if (t->skin_is_given || lasted < t->skin_look)
+        return STATUS_OK;
+    t->skin_look *= 2;
+    TRY(table_travel(sim, &travel, why));
+    double best = best_skin(sim, travel / (double)lasted);
+    if (best < 0.8 * t->skin) {
+        t->skin = best;
+        *rebuild = true;
+    }
+    return STATUS_OK;
 }
 
 static status enqueue_batch(simulation *sim, int steps, failure *why)
@@ -505,8 +527,11 @@ status simulation_advance(simulation *sim, int64_t steps, failure *why)
         sim->stage_steps += done;
         sim->time = time_after(sim, 0);
         steps -= done;
-        if (rebuild) {
+        if (rebuild)
             adapt_skin(sim);
+        else
+            TRY(look_at_skin(sim, &rebuild, why));
+        if (rebuild) {
             TRY(simulation_pose_now(sim, why));
             TRY(table_build(sim, false, why));
         }

@@ -42,6 +42,7 @@ typedef struct contact_table {
     clast_grid grid_host;
     double skin;
     bool skin_is_given;
+    int64_t skin_look; /* steps after the last table at which the skin is looked at again */
     bool built;
 } contact_table;
 
@@ -151,6 +152,8 @@ status table_create(simulation *sim, failure *why);
 void table_free(simulation *sim);
 /* Sorts the grains and builds the table anew, histories carried over. drop_outside: grains outside the domain leave for good. */
 status table_build(simulation *sim, bool drop_outside, failure *why);
+/* Largest displacement since the table was built, relative to the common one, m. */
+status table_travel(simulation *sim, double *out, failure *why);
 uint64_t table_bytes(const simulation *sim);
 
 /* limit.c */

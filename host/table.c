@@ -10,6 +10,8 @@
 #define GROUP CLAST_BLOCK
 /* Reserve on growth, so that a bed that gets denser does not allocate at every table. */
 #define RESERVE 1.08
+/* Steps after a table at which it is asked whether a smaller skin would do; then twice as many. */
+#define FIRST_SKIN_LOOK 100
 
 enum { WORK_A, WORK_B, WORK_C, WORK_D, WORK_E };
 
@@ -368,6 +370,7 @@ static status finish(simulation *sim, failure *why)
     sim->particles_stale = true;
     sim->built_time = sim->time;
     sim->rebuild_step = sim->step;
+    t->skin_look = FIRST_SKIN_LOOK;
     TRY(store_copy(sim, store_find(sim, "position")->mem, sim->built_position, 0, 0, field_bytes(sim, &field_position), why));
     TRY(simulation_choose_drift(sim, why));
     return launch_bind_stages(sim, why);
@@ -397,6 +400,31 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
     sim->rebuilds++;
     sim->rebuild_seconds += seconds() - start;
     return STATUS_OK;
+}
+
+status table_travel(simulation *sim, double *out, failure *why)
+{
+    int64_t chunks = (sim->count + SCAN_CHUNK - 1) / SCAN_CHUNK;
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "table_travel");
+    double *most = malloc(sizeof *most * (size_t)(chunks + 1));
+    *out = 0.0;
+    if (!most)
+        return fail(why, STATUS_ERROR, "out of memory");
+    for (int c = 0; c < 3; c++)
+        launch.drift[c] = sim->drift_velocity[c] * (sim->time - sim->built_time);
+    status result = observe_partial(sim, chunks + 1, why);
+    if (result == STATUS_OK)
+        result = launch_set(kernel, "table_travel", why, "Lmmm", &launch, store_find(sim, "position")->mem, sim->built_position, sim->partial);
+    if (result == STATUS_OK)
+        result = launch_run(sim, kernel, "table_travel", chunks, 1, why);
+    if (result == STATUS_OK)
+        result = store_read(sim, sim->partial, 0, 8 * (uint64_t)chunks, most, why);
+    for (int64_t c = 0; c < chunks && result == STATUS_OK; c++)
+        *out = fmax(*out, most[c]);
+    free(most);
+    *out = sqrt(*out);
+    return result;
 }
 
 uint64_t table_bytes(const simulation *sim)

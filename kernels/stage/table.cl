@@ -279,6 +279,19 @@ __kernel void table_carry(__global const int *restrict match, __global const rea
     to[to_offset + k] = odd && m < 0 ? -value : value;
 }
 
+/* Per chunk of grains the square of the largest displacement since the table was built, relative to the common one. */
+__kernel void table_travel(const clast_launch launch, __global const real *restrict position, __global const real *restrict built_position,
+                           __global double *restrict partial)
+{
+    int chunk = get_global_id(0), first = chunk * SCAN_CHUNK, end = min(first + SCAN_CHUNK, launch.particle_count);
+    real most = R(0.0);
+    for (int i = first; i < end; i++) {
+        vec3 moved = periodic_nearest(&launch, sub(sub(GRAIN3(position, i), GRAIN3(built_position, i)), from3(launch.drift)));
+        most = fmax(most, dot3(moved, moved));
+    }
+    partial[chunk] = most;
+}
+
 /* Index of every permanent id; -1 (set before) where the grain has left. */
 __kernel void table_where(const clast_launch launch, __global const int *restrict id, __global int *restrict where)
 {
