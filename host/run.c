@@ -298,9 +298,10 @@ static status interrupt(run *r, failure *why)
     return fail(why, STATUS_INTERRUPTED, "interrupted at t = %.9g s; go on with: clast resume %s", r->sim->time, r->checkpoint_path);
 }
 
+/* A signal is heard after the steps of a chunk, or once all that is due at a step is done: a checkpoint leaves nothing of its step to do. */
 static status run_stage(run *r, failure *why)
 {
-    for (;;) {
+    while (!schedule_stage_over(&r->schedule, r->sim)) {
         int64_t steps = schedule_steps(&r->schedule, r->sim);
         while (steps > 0) {
             /* about half a second, so that a signal is heard */
@@ -311,7 +312,7 @@ static status run_stage(run *r, failure *why)
             double spent = fmax(seconds() - start, 1e-6);
             r->chunk_steps = fmax(1.0, fmin(1e6, (double)some * 0.5 / spent));
             show_progress(r);
-            if (interrupted)
+            if (interrupted && steps > 0)
                 return interrupt(r, why);
         }
         TRY(looks(r, why));
@@ -324,9 +325,10 @@ static status run_stage(run *r, failure *why)
             TRY(output_frame(r->output, why));
         if (now.checkpoint)
             TRY(write_checkpoint(r, why));
-        if (now.stage_end)
-            return STATUS_OK;
+        if (interrupted)
+            return interrupt(r, why);
     }
+    return STATUS_OK;
 }
 
 /* From stage `first` on; the first is already under way when `resumed`. */

@@ -97,6 +97,8 @@ int64_t schedule_steps(schedule *s, simulation *sim)
         steps = least(steps, steps_to(sim, s->next_frame * s->scene->output.every_s, false));
     if (!isnan(observation_interval(s)))
         steps = least(steps, steps_to(sim, s->next_observation * observation_interval(s), false));
+    if (!isnan(s->scene->output.checkpoint_every_s))
+        steps = least(steps, steps_to(sim, s->next_checkpoint * s->scene->output.checkpoint_every_s, false));
     if (stage->until_steps >= 0)
         steps = least(steps, stage->until_steps - sim->stage_steps);
     if (!isnan(stage->until_rest) || !isnan(stage->until_rest_j))
@@ -113,11 +115,17 @@ static bool reached(const simulation *sim, double time)
     return !isnan(time) && sim->time >= time - 0.5 * sim->dt * (1.0 + SAME);
 }
 
-due schedule_due(schedule *s, const simulation *sim)
+bool schedule_stage_over(const schedule *s, const simulation *sim)
 {
     const scene_stage *stage = stage_of(s, sim);
-    due now = {false, false, false, false};
     double end = stage_end_time(s, sim);
+    return (!isnan(end) && sim->time >= end - SAME * sim->dt) || (stage->until_steps >= 0 && sim->stage_steps >= stage->until_steps) ||
+           s->rest_checks >= REST_CHECKS;
+}
+
+due schedule_due(schedule *s, const simulation *sim)
+{
+    due now = {false, false, false, false};
     while (reached(sim, s->next_frame * s->scene->output.every_s)) {
         now.frame = true;
         s->next_frame++;
@@ -130,7 +138,6 @@ due schedule_due(schedule *s, const simulation *sim)
         now.checkpoint = true;
         s->next_checkpoint++;
     }
-    now.stage_end = (!isnan(end) && sim->time >= end - SAME * sim->dt) || (stage->until_steps >= 0 && sim->stage_steps >= stage->until_steps) ||
-                    s->rest_checks >= REST_CHECKS;
+    now.stage_end = schedule_stage_over(s, sim);
     return now;
 }
