@@ -57,6 +57,15 @@ INLINE vec3 cross3(vec3 a, vec3 b)
     return v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
+/* v turned by the angle |w| about w, for angles of a step: Cayley's form, which keeps the length to |w|^6/64 and needs no root. */
+INLINE vec3 turn_by(vec3 v, vec3 w)
+{
+    vec3 h = scale(R(0.5), w);
+    real h2 = dot3(h, h);
+    real weight = R(2.0) * (R(1.0) - h2 * (R(1.0) - h2));
+    return add_scaled(v, weight, cross3(h, add(v, cross3(h, v))));
+}
+
 INLINE vec3 from3(const clast_f64 *a)
 {
     return v3((real)a[0], (real)a[1], (real)a[2]);
@@ -96,6 +105,7 @@ typedef struct contact {
     real mass_eff;       /* m*; m at a wall */
     real contact_radius; /* sqrt(r* d) */
     real inertia_root;   /* sqrt(m* sqrt(r* d)): every damper of TM is a constant times this */
+    real contact_inverse, radius_inverse; /* 1/sqrt(r* d), 0 where the two do not touch; 1/r* */
     real arm_i, arm_j;   /* of the friction force */
     vec3 slip;           /* tangential relative velocity of the surfaces */
     vec3 turn;           /* rate at which the normal turns */

@@ -23,6 +23,7 @@ static void derive_elastic_plastic(const contact_class *class, const double *opt
     parameter[0] = 8.0 * shear;
     parameter[1] = 2.0 * rolling_damping_ratio(class) * sqrt(8.0 * shear);
     parameter[2] = interaction_value(class, &property_rolling_friction);
+    parameter[3] = shear > 0.0 ? 1.0 / (8.0 * shear) : 0.0;
 }
 
 static void elastic_plastic_constants(const double *option, char *text, size_t size)
@@ -40,7 +41,7 @@ const law law_elastic_plastic = {
     .material_needs = {&property_youngs_modulus, &property_poissons_ratio},
     .interaction_needs = {&property_rolling_friction},
     .pair_fields = {&field_rolling_spring},
-    .parameters = {"ROLLING_MODULUS", "ROLLING_DAMPING", "ROLLING_FRICTION"},
+    .parameters = {"ROLLING_MODULUS", "ROLLING_DAMPING", "ROLLING_FRICTION", "ROLLING_COMPLIANCE"},
     .derive = derive_elastic_plastic,
     .constants = elastic_plastic_constants,
 };

@@ -54,6 +54,7 @@ static void derive_mindlin(const contact_class *class, const double *option, dou
         shear = 0.0; /* a spring that never bears anything must not limit the step */
     parameter[0] = 8.0 * shear;
     parameter[1] = 2.0 * tangential_damping_ratio(class) * sqrt(8.0 * shear);
+    parameter[2] = shear > 0.0 ? 1.0 / (8.0 * shear) : 0.0;
 }
 
 static void lever_arm_constant(double choice, char *text, size_t size)
@@ -82,7 +83,7 @@ const law law_mindlin = {
     .material_needs = {&property_youngs_modulus, &property_poissons_ratio},
     .interaction_needs = {&property_friction_static},
     .pair_fields = {&field_tangential_spring},
-    .parameters = {"TANGENTIAL_MODULUS", "TANGENTIAL_DAMPING"},
+    .parameters = {"TANGENTIAL_MODULUS", "TANGENTIAL_DAMPING", "TANGENTIAL_COMPLIANCE"},
     .derive = derive_mindlin,
     .constants = mindlin_constants,
 };
@@ -95,6 +96,7 @@ static void derive_coulomb_linear(const contact_class *class, const double *opti
         stiffness = 0.0;
     parameter[0] = stiffness;
     parameter[1] = 2.0 * tangential_damping_ratio(class) * sqrt(stiffness);
+    parameter[2] = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
 }
 
 static void coulomb_linear_constants(const double *option, char *text, size_t size)
@@ -112,7 +114,7 @@ const law law_coulomb_linear = {
     .options = {{"lever_arm", "contact_point|radius", 0, 0, 0, "arm of the friction force: to the contact point, or the radius"}},
     .interaction_needs = {&property_tangential_stiffness, &property_friction_static},
     .pair_fields = {&field_tangential_spring},
-    .parameters = {"TANGENTIAL_STIFFNESS", "TANGENTIAL_DAMPING"},
+    .parameters = {"TANGENTIAL_STIFFNESS", "TANGENTIAL_DAMPING", "TANGENTIAL_COMPLIANCE"},
     .derive = derive_coulomb_linear,
     .constants = coulomb_linear_constants,
 };

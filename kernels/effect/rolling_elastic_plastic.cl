@@ -1,10 +1,12 @@
 /* rolling: rotational spring, damper and slider, TM Eq. 15-20 with the moment against the relative spin (docs/theory.md).
  * k = 8 G* sqrt(r* d) r*^2, c = 2 xi sqrt(8 G* j* sqrt(r*)) r* d^(1/4), limit mu_r r* N; j = (7/5) m r^2 about the contact.
- * Reads ROLLING_MODULUS = 8 G*, ROLLING_DAMPING = 2 xi sqrt(8 G*), ROLLING_FRICTION = mu_r; history: rolling_spring (rad). */
+ * Reads ROLLING_MODULUS = 8 G*, ROLLING_DAMPING = 2 xi sqrt(8 G*), ROLLING_FRICTION = mu_r,
+ * ROLLING_COMPLIANCE = 1/(8 G*); history: rolling_spring (rad). */
 #ifndef ROLLING_MODULUS
 #define ROLLING_MODULUS 0
 #define ROLLING_DAMPING 1
 #define ROLLING_FRICTION 2
+#define ROLLING_COMPLIANCE 3
 #endif
 #ifndef ROLLING_TWIST
 #define ROLLING_TWIST R(1.0)
@@ -24,13 +26,11 @@ INLINE real rolling_inertia(const contact *c)
     return R(1.4) * ii * jj / (ii + jj);
 }
 
-/* Turned with the pair: by the turn of the normal and the mean spin about it, its length kept. */
+/* Turned with the pair: by the turn of the normal and the mean spin about it. */
 INLINE vec3 rolling_turn(const contact *c, vec3 spring)
 {
-    vec3 about = add_scaled(c->turn, R(0.5) * dot3(add(c->spin_i, c->spin_j), c->n), c->n);
-    vec3 turned = add_scaled(spring, c->dt, cross3(about, spring));
-    real before = dot3(spring, spring), after = dot3(turned, turned);
-    return scale(after > R(0.0) ? sqrt(before / (after > R(0.0) ? after : R(1.0))) : R(1.0), turned);
+    real twist = R(0.5) * dot3(add(c->spin_i, c->spin_j), c->n);
+    return turn_by(spring, scale(c->dt, add_scaled(c->turn, twist, c->n)));
 }
 
 INLINE vec3 rolling_rate(const contact *c)
@@ -53,10 +53,11 @@ INLINE void rolling_moment(const contact *c, rolling_state *s, response *out)
     vec3 spring = add_scaled(rolling_turn(c, s->spring), c->dt, rate);
     vec3 trial = add_scaled(scale(-m.stiffness, spring), -m.damping, rate);
     real size = sqrt(dot3(trial, trial)), limit = c->value[ROLLING_FRICTION] * c->radius_eff * out->normal;
-    bool yields = size > limit, live = c->overlap > R(0.0) && m.stiffness > R(0.0);
+    real compliance = c->value[ROLLING_COMPLIANCE] * c->contact_inverse * c->radius_inverse * c->radius_inverse;
+    bool yields = size > limit, live = compliance > R(0.0);
     real factor = yields ? limit / size : R(1.0);
     out->rolling = scale(factor, trial);
-    vec3 returned = scale(R(-1.0) / (live ? m.stiffness : R(1.0)), add_scaled(out->rolling, m.damping, rate));
+    vec3 returned = scale(-compliance, add_scaled(out->rolling, m.damping, rate));
     s->spring = v3(yields ? returned.x : spring.x, yields ? returned.y : spring.y, yields ? returned.z : spring.z);
     s->spring = v3(live ? s->spring.x : R(0.0), live ? s->spring.y : R(0.0), live ? s->spring.z : R(0.0));
 }

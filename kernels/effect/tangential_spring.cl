@@ -1,16 +1,13 @@
-/* The stick-slip machinery that the tangential laws share: they define TANGENTIAL_STIFFNESS_OF and TANGENTIAL_DAMPING_OF. */
+/* The stick-slip machinery that the tangential laws share: they define the stiffness of a contact, its reciprocal
+ * (0 where the two do not touch) and its damping. */
 
-/* The stored spring in the current tangent plane, turned about the normal with the pair's mean spin, its length kept (TM, settled in
- * docs/theory.md). A spring along the normal has no direction left and is dropped. */
+/* The stored spring turned with the pair: with the normal, and about it with the pair's mean spin. What is left along the normal after a
+ * step's turn is of second order and is dropped. (TM; docs/theory.md.) */
 INLINE vec3 spring_turn(const contact *c, vec3 spring)
 {
-    real before = dot3(spring, spring);
-    vec3 flat = add_scaled(spring, -dot3(spring, c->n), c->n);
-    real twist = R(0.5) * c->dt * dot3(add(c->spin_i, c->spin_j), c->n);
-    flat = add_scaled(flat, twist, cross3(c->n, flat));
-    real after = dot3(flat, flat);
-    bool kept = after > R(1e-24) * before;
-    return scale(kept ? sqrt(before / (kept ? after : R(1.0))) : R(0.0), flat);
+    real twist = R(0.5) * dot3(add(c->spin_i, c->spin_j), c->n);
+    vec3 turned = turn_by(spring, scale(c->dt, add_scaled(c->turn, twist, c->n)));
+    return add_scaled(turned, -dot3(turned, c->n), c->n);
 }
 
 /* While the overlap falls, the spring is scaled with the stiffness, so that unloading creates no energy. */
@@ -22,13 +19,12 @@ INLINE real spring_unloading(const contact *c)
 }
 
 /* Where the contact slides, the spring that gives the force: D = -(f + c u)/k (TM Eq. 13); nothing where the two do not touch. */
-INLINE vec3 spring_return(const contact *c, real stiffness, real damping, real factor, vec3 trial, vec3 force)
+INLINE vec3 spring_return(const contact *c, real compliance, real damping, real factor, vec3 trial, vec3 force)
 {
-    bool slides = factor < R(1.0), stiff = stiffness > R(0.0);
-    real inverse = R(-1.0) / (stiff ? stiffness : R(1.0));
-    vec3 returned = scale(inverse, add_scaled(force, damping, c->slip));
+    bool slides = factor < R(1.0);
+    vec3 returned = scale(-compliance, add_scaled(force, damping, c->slip));
     vec3 spring = v3(slides ? returned.x : trial.x, slides ? returned.y : trial.y, slides ? returned.z : trial.z);
-    bool live = stiff && c->overlap > R(0.0);
+    bool live = compliance > R(0.0);
     return v3(live ? spring.x : R(0.0), live ? spring.y : R(0.0), live ? spring.z : R(0.0));
 }
 
@@ -50,7 +46,7 @@ INLINE void tangential_force(const contact *c, slip_state *slip, tangential_stat
     vec3 trial = add_scaled(scale(-stiffness, spring), -damping, c->slip);
     real factor = slip_factor(c, out->normal, sqrt(dot3(trial, trial)), slip);
     out->tangential = scale(factor, trial);
-    s->spring = spring_return(c, stiffness, damping, factor, spring, out->tangential);
+    s->spring = spring_return(c, TANGENTIAL_COMPLIANCE_OF(c), damping, factor, spring, out->tangential);
 }
 
 INLINE real tangential_energy(const contact *c, const tangential_state *s)

@@ -11,8 +11,14 @@
 /* What follows from normal, overlap and the two bodies. */
 INLINE void contact_complete(contact *c)
 {
-    c->contact_radius = sqrt(c->radius_eff * c->overlap);
-    c->inertia_root = sqrt(c->mass_eff * c->contact_radius);
+    real a = sqrt(c->radius_eff * c->overlap);
+    bool touches = c->overlap > R(0.0);
+    /* one division for both reciprocals */
+    real inverse = R(1.0) / ((touches ? a : R(1.0)) * c->radius_eff);
+    c->contact_radius = a;
+    c->inertia_root = sqrt(c->mass_eff * a);
+    c->contact_inverse = touches ? inverse * c->radius_eff : R(0.0);
+    c->radius_inverse = inverse * (touches ? a : R(1.0));
 }
 
 INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR_DECLARE)
@@ -20,7 +26,7 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     int i = owner[k], j = other[k];
     vec3 d = periodic_nearest(launch, sub(GRAIN3(position, j), GRAIN3(position, i)));
     vec3 u = sub(GRAIN3(velocity, i), GRAIN3(velocity, j));
-    real d2 = dot3(d, d), sum;
+    real d2 = dot3(d, d);
     c->radius_i = radius[i];
     c->radius_j = radius[j];
     c->spin_i = ROTATION_LOAD(launch, i);
@@ -28,16 +34,17 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     c->mass_i = motion_mass(MOTION_GRAIN(i), mass[i]);
     c->mass_j = motion_mass(MOTION_GRAIN(j), mass[j]);
     c->class = composition_class(COMPOSITION_GRAIN(i), COMPOSITION_GRAIN(j));
-    sum = c->radius_i + c->radius_j;
+    real sum = c->radius_i + c->radius_j, mass_sum = c->mass_i + c->mass_j;
+    real both = R(1.0) / (sum * mass_sum); /* one division for both reciprocals */
     bool apart = d2 > R(0.0);
     real inverse = R(1.0) / sqrt(apart ? d2 : R(1.0)), distance = d2 * inverse;
     real overlap = sum - distance;
     overlap = apart && overlap > R(0.0) ? overlap : R(0.0);
     c->overlap = motion_overlap(MOTION_GRAIN(i), MOTION_GRAIN(j), overlap);
     c->n = scale(inverse, d);
-    c->radius_eff = c->radius_i * c->radius_j / sum;
-    c->mass_eff = c->mass_i * c->mass_j / (c->mass_i + c->mass_j);
-    real shrink = LEVER_ARM_SHRINKS * c->overlap / sum;
+    c->radius_eff = c->radius_i * c->radius_j * (both * mass_sum);
+    c->mass_eff = c->mass_i * c->mass_j * (both * sum);
+    real shrink = LEVER_ARM_SHRINKS * c->overlap * (both * mass_sum);
     c->arm_i = c->radius_i - shrink * c->radius_j;
     c->arm_j = c->radius_j - shrink * c->radius_i;
     c->approach = dot3(u, c->n);
