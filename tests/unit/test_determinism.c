@@ -46,7 +46,7 @@ static const char *const scenes[VARIANTS] = {
 
 /* ---- runs ---- */
 
-#define STEPS 900
+#define STEPS 1300
 
 typedef struct manner {
     const char *table; /* entries of contact_table */
@@ -179,7 +179,7 @@ static void test_bits(void **state)
     compare(v, &reference, plain, "again");
     compare(v, &reference, (manner){.table = "skin_m: 1.0e-3"}, "a thick skin");
     compare(v, &reference, (manner){.table = "batch_steps: 1"}, "a batch a step");
-    compare(v, &reference, (manner){.rebuild_every = 3}, "a table every three steps");
+    compare(v, &reference, (manner){.rebuild_every = 10}, "a table every ten steps");
     if (v == MOVING_WALL || v == SHEARED) {
         compare(v, &reference, (manner){.table = "skin_m: 4.0e-5"}, "a thin skin");
         compare(v, &reference, (manner){.table = "batch_steps: 1000"}, "batches of 1000");
@@ -238,7 +238,7 @@ static dump run_with_threads(variant v, const char *threads)
 static void test_threads(void **state)
 {
     (void)state;
-    for (variant v = 0; v < VARIANTS; v++) {
+    for (variant v = MOVING_WALL; v < VARIANTS; v += SHEARED - MOVING_WALL) {
         dump one = run_with_threads(v, "1"), two = run_with_threads(v, "2");
         assert_true(one.count > 1000);
         assert_same_bits(&one, &two, "two threads");
