@@ -19,7 +19,7 @@
 /* cmocka wants the headers above */
 #include <cmocka.h>
 
-#define PI 3.14159265358979323846
+#define PI          3.14159265358979323846
 #define COUNT_OF(a) ((int)(sizeof(a) / sizeof *(a)))
 
 /* ---- text ---- */
@@ -52,7 +52,9 @@ static inline void put(text *t, const char *format, ...)
 /* One row of a `list` generator. */
 static inline void put_grain(text *t, double radius, const double *x, const double *v, const double *w)
 {
-    put(t, "      - {radius_m: %.17g, position_m: [%.17g, %.17g, %.17g], velocity_m_s: [%.17g, %.17g, %.17g], spin_rad_s: [%.17g, %.17g, %.17g]}\n",
+    put(t,
+        "      - {radius_m: %.17g, position_m: [%.17g, %.17g, %.17g], velocity_m_s: [%.17g, %.17g, %.17g], spin_rad_s: [%.17g, %.17g, "
+        "%.17g]}\n",
         radius, x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]);
 }
 
@@ -64,12 +66,12 @@ typedef struct physics_case {
     simulation *sim;
 } physics_case;
 
-#define MUST(call)                                             \
-    do {                                                       \
-        failure must_why_ = {{0}};                             \
-        failure *why = &must_why_;                             \
-        if ((call) != STATUS_OK)                               \
-            fail_msg("%s", must_why_.text);                    \
+#define MUST(call)                          \
+    do {                                    \
+        failure must_why_ = {{0}};          \
+        failure *why = &must_why_;          \
+        if ((call) != STATUS_OK)            \
+            fail_msg("%s", must_why_.text); \
     } while (0)
 
 /* One device for all cases of a program. */
@@ -171,19 +173,19 @@ static inline step_limit case_limit(physics_case *c)
 
 /* ---- numbers ---- */
 
-#define NEAR(value, expected, tolerance)                                                                                           \
-    do {                                                                                                                           \
-        double near_value_ = (value), near_expected_ = (expected), near_tolerance_ = (tolerance);                                 \
-        if (!(fabs(near_value_ - near_expected_) <= near_tolerance_))                                                              \
-            fail_msg("%s is %.15g, not %.15g (%s) to %.3g: off by %.3g", #value, near_value_, near_expected_, #expected,           \
-                     near_tolerance_, near_value_ - near_expected_);                                                               \
+#define NEAR(value, expected, tolerance)                                                                                                  \
+    do {                                                                                                                                  \
+        double near_value_ = (value), near_expected_ = (expected), near_tolerance_ = (tolerance);                                         \
+        if (!(fabs(near_value_ - near_expected_) <= near_tolerance_))                                                                     \
+            fail_msg("%s is %.15g, not %.15g (%s) to %.3g: off by %.3g", #value, near_value_, near_expected_, #expected, near_tolerance_, \
+                     near_value_ - near_expected_);                                                                                       \
     } while (0)
-#define RELATIVE(value, expected, tolerance) NEAR(value, expected, (tolerance) * fabs(expected))
-#define BETWEEN(value, low, high)                                                                                                  \
-    do {                                                                                                                           \
-        double between_value_ = (value);                                                                                           \
-        if (!(between_value_ >= (low) && between_value_ <= (high)))                                                                \
-            fail_msg("%s is %.15g, not between %.15g and %.15g", #value, between_value_, (double)(low), (double)(high));           \
+#define RELATIVE(value, expected, tolerance) NEAR(value, expected, (tolerance)*fabs(expected))
+#define BETWEEN(value, low, high)                                                                                        \
+    do {                                                                                                                 \
+        double between_value_ = (value);                                                                                 \
+        if (!(between_value_ >= (low) && between_value_ <= (high)))                                                      \
+            fail_msg("%s is %.15g, not between %.15g and %.15g", #value, between_value_, (double)(low), (double)(high)); \
     } while (0)
 
 static inline double sphere_mass(double density, double radius)

@@ -1,5 +1,5 @@
-/* Equal spheres side by side on the plane z = 0, each in a lane along y, under a gravity that may lean along x: what the tests of friction and
- * rolling share. Every sphere starts at its overlap at rest. */
+/* Equal spheres side by side on the plane z = 0, each in a lane along y, under a gravity that may lean along x: what the tests of friction
+ * and rolling share. Every sphere starts at its overlap at rest. */
 #ifndef CLAST_TESTS_ON_PLANE_H
 #define CLAST_TESTS_ON_PLANE_H
 #include "case.h"
@@ -40,13 +40,18 @@ static inline double arm_share(double slope)
     return 1.0 - rest_overlap(slope) / radius;
 }
 
+/* Always the same number of materials, so that cases share programs. */
+#define LANES 4
+
 static inline physics_case lanes_open(const char *effects, double slope, const lane *lanes, int count)
 {
     text t = {0};
+    assert_in_range(count, 1, LANES);
     put(&t, "gravity_m_s2: [%.17g, 0, %.17g]\neffects:\n%s\nmaterials:\n", G * sin(slope), -G * cos(slope), effects);
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < LANES; k++)
         put(&t, "  - {name: m%d, density_kg_m3: %.17g, youngs_modulus_pa: %.17g, poissons_ratio: %.17g}\n", k, density, young, poisson);
-    put(&t, "interactions:\n  - {between: default, friction_static: 0, rolling_friction: 0, normal_stiffness_n_m: 1, tangential_stiffness_n_m: 1}\n");
+    put(&t, "interactions:\n  - {between: default, friction_static: 0, rolling_friction: 0, normal_stiffness_n_m: 1, "
+            "tangential_stiffness_n_m: 1}\n");
     for (int k = 0; k < count; k++)
         put(&t, "  - {between: [m%d, floor], %s}\n", k, lanes[k].interaction);
     put(&t, "walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]\nparticles:\n");

@@ -6,7 +6,8 @@ static const double none[3] = {0, 0, 0};
 static physics_case one_grain(const char *lines, const double *v, const double *w)
 {
     text t = {0};
-    put(&t, "%s\nmaterials: [{name: m, density_kg_m3: 2500}]\nparticles:\n  - name: p\n    material: m\n    generator: list\n    items:\n", lines);
+    put(&t, "%s\nmaterials: [{name: m, density_kg_m3: 2500}]\nparticles:\n  - name: p\n    material: m\n    generator: list\n    items:\n",
+        lines);
     put_grain(&t, radius, none, v, w);
     return case_open(&t);
 }
@@ -44,25 +45,21 @@ static void test_local(void **state)
     case_close(&k);
 }
 
-/* Equilibrium is what it is without damping, and is reached though the contact has none of its own; a brake on the spin acts 1 + a times. */
+/* Equilibrium is what it is without damping, and is reached though the contact has none of its own; a brake on the spin acts 1 + a times.
+ * */
 static void test_local_in_contact(void **state)
 {
     (void)state;
     const lane lanes[] = {{"normal_damping_ratio: 0, rolling_friction: 0.02", 0, 0, 0, 0, 100}};
-    const char *effects = "  - {slot: normal, law: hertz}\n  - {slot: rolling, law: constant_torque}\n  - {slot: body, law: local_damping, coefficient: 0.3}\n";
+    const char *effects = "  - {slot: normal, law: hertz}\n  - {slot: rolling, law: constant_torque}\n  - {slot: body, law: local_damping, "
+                          "coefficient: 0.3}\n";
     physics_case c = lanes_open(effects, 0.0, lanes, 1);
     case_run(&c, 5000, 1.0e-5);
     NEAR(case_get(&c, "spin", 0, 2), 100.0 - 1.3 * 2.5 * 0.02 * G / radius * 0.05, 1e-2);
-    case_close(&c);
-    text t = {0};
-    put(&t, "gravity_m_s2: [0, 0, %g]\neffects:\n%s", -G, effects);
-    put(&t, "materials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: %g}]\n", density, young, poisson);
-    put(&t, "interactions: [{between: default, normal_damping_ratio: 0, rolling_friction: 0.02}]\n"
-            "walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]\nparticles:\n  - name: p\n    material: m\n    generator: list\n    items:\n");
-    put_grain(&t, radius, (double[]){0, 0, radius}, none, none);
-    c = case_open(&t);
+    c.sim->gravity[2] *= 2.0;
     case_run(&c, 20000, 1.0e-5);
-    NEAR(case_get(&c, "position", 0, 2), radius - rest_overlap(0.0), 1e-9 * rest_overlap(0.0));
+    double rest = pow(2.0, 2.0 / 3.0) * rest_overlap(0.0);
+    NEAR(case_get(&c, "position", 0, 2), radius - rest, 1e-9 * rest);
     case_close(&c);
 }
 
@@ -72,7 +69,8 @@ static void test_local_in_contact(void **state)
 static void check_spin(double rate, double dt, int steps, double tolerance)
 {
     const double axis[3] = {1.0 / sqrt(14.0), 2.0 / sqrt(14.0), -3.0 / sqrt(14.0)};
-    physics_case c = one_grain("output: {fields: [position, orientation]}", none, (double[]){rate * axis[0], rate * axis[1], rate * axis[2]});
+    physics_case c = one_grain("output: {fields: [position, orientation]}", none,
+                               (double[]){rate * axis[0], rate * axis[1], rate * axis[2]});
     case_run(&c, steps, dt);
     double *q = case_field(&c, "orientation"), half = 0.5 * rate * dt * steps, norm = 0.0;
     double sign = q[0] * cos(half) + (q[1] * axis[0] + q[2] * axis[1] + q[3] * axis[2]) * sin(half) < 0.0 ? -1.0 : 1.0;
@@ -100,7 +98,8 @@ static void test_orientation_of_a_rolling_grain(void **state)
 {
     (void)state;
     const lane lanes[] = {{"normal_damping_ratio: 0.3, friction_static: 0.3", 1.0, 0, 0, 0, 0}};
-    physics_case c = lanes_open("  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin}\noutput: {fields: [position, orientation]}\n", 0.0, lanes, 1);
+    physics_case c = lanes_open(
+        "  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin}\noutput: {fields: [position, orientation]}\n", 0.0, lanes, 1);
     double angle = 0.0, dt = 1.0e-5, s = arm_share(0.0);
     for (int part = 0; part < 200; part++) {
         double before = wy_of(&c, 0);
@@ -122,8 +121,11 @@ static void test_orientation_of_a_rolling_grain(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_viscous),     cmocka_unit_test(test_local), cmocka_unit_test(test_local_in_contact),
-        cmocka_unit_test(test_orientation), cmocka_unit_test(test_orientation_of_a_rolling_grain),
+        cmocka_unit_test(test_viscous),
+        cmocka_unit_test(test_local),
+        cmocka_unit_test(test_local_in_contact),
+        cmocka_unit_test(test_orientation),
+        cmocka_unit_test(test_orientation_of_a_rolling_grain),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

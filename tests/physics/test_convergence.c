@@ -12,7 +12,9 @@ static double duration(void)
 static double height(double ratio, double share, int steps)
 {
     text t = {0};
-    put(&t, "effects: [{slot: normal, law: hertz}]\nmaterials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: 0.3}]\n", density, young);
+    put(&t,
+        "effects: [{slot: normal, law: hertz}]\nmaterials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: 0.3}]\n",
+        density, young);
     put(&t, "interactions: [{between: default, normal_damping_ratio: %g}]\n", ratio);
     put(&t, "walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]\n");
     put(&t, "particles:\n  - name: p\n    material: m\n    generator: list\n    items:\n");

@@ -40,7 +40,8 @@ static void test_slide_to_roll(void **state)
     check_slide_to_roll(mindlin, arm_share(0.0));
 }
 
-/* Rolls with g sin(al)/(1 + 2/(5 s^2)) while tan(al) <= mu (1 + 5 s^2/2), else slides: 2 per cent to either side of that, and far from it. */
+/* Rolls with g sin(al)/(1 + 2/(5 s^2)) while tan(al) <= mu (1 + 5 s^2/2), else slides: 2 per cent to either side of that, and far from it.
+ * */
 static void test_incline(void **state)
 {
     (void)state;
@@ -106,9 +107,8 @@ static void test_sliding_stays_sliding(void **state)
     case_close(&c);
 }
 
-/* The static limit: a sphere that is spun up from rest holds while the force it needs is below mu_s N, here a slope with tan = 3.5 mu_s (1 -+ 5 %).
- * Strong damping keeps the sum of spring and damper
- * from overshooting. */
+/* The static limit: a sphere on a slope holds while the force that it needs is below mu_s N, here with tan(al) 5 per cent to either side of
+ * 3.5 mu_s. Strong damping keeps the sum of spring and damper from overshooting. */
 static void test_static_limit(void **state)
 {
     (void)state;
@@ -117,8 +117,8 @@ static void test_static_limit(void **state)
     lane lanes[2] = {{0}};
     for (int k = 0; k < 2; k++) {
         double mu = edge * (k ? 0.95 : 1.05);
-        snprintf(words[k], sizeof words[k], "normal_damping_ratio: 0.3, tangential_damping_ratio: 3, friction_static: %.17g, friction_dynamic: %.17g", mu,
-                 0.5 * mu);
+        snprintf(words[k], sizeof words[k],
+                 "normal_damping_ratio: 0.3, tangential_damping_ratio: 3, friction_static: %.17g, friction_dynamic: %.17g", mu, 0.5 * mu);
         lanes[k].interaction = words[k];
     }
     physics_case c = lanes_open(mindlin, slope, lanes, 2);
@@ -139,12 +139,16 @@ static void check_oblique(const char *shear_modulus, const oblique *rows, int co
     const double young = 7.0e10, density = 2700.0, mu = 0.3, vn = 1.0;
     double duration = hertz_duration(young / (1.0 - 0.09), radius, sphere_mass(density, radius), vn);
     text t = {0};
-    put(&t, "effects:\n  - {slot: normal, law: hertz}\n"
-            "  - {slot: tangential, law: mindlin, shear_modulus: %s, lever_arm: radius, unloading: printed}\n", shear_modulus);
-    put(&t, "materials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: 0.3}]\n", density, young);
+    put(&t,
+        "effects:\n  - {slot: normal, law: hertz}\n"
+        "  - {slot: tangential, law: mindlin, shear_modulus: %s, lever_arm: radius, unloading: printed}\n",
+        shear_modulus);
+    put(&t, "materials:\n");
+    for (int k = 0; k < LANES; k++) /* one is used: as many as the other cases have, which share the program */
+        put(&t, "  - {name: m%d, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: 0.3}\n", k, density, young);
     put(&t, "interactions: [{between: default, normal_damping_ratio: 0, friction_static: %g}]\n", mu);
     put(&t, "walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]\n");
-    put(&t, "particles:\n  - name: p\n    material: m\n    generator: list\n    items:\n");
+    put(&t, "particles:\n  - name: p\n    material: m0\n    generator: list\n    items:\n");
     for (int k = 0; k < count; k++)
         put_grain(&t, radius, (double[]){0, 4.0 * radius * k, radius}, (double[]){rows[k].v_in, 0, -vn}, (double[]){0, 0, 0});
     physics_case c = case_open(&t);
@@ -180,7 +184,8 @@ static void test_oblique_pair(void **state)
     double vn = 1.0, vt = 2.0, mu = 0.1, stiffer = 1.0e6;
     double duration = hertz_duration(0.5 * stiffer * plane_modulus(), 0.5 * radius, 0.5 * lane_mass(), vn);
     text t = {0};
-    put(&t, "effects:\n%s\nmaterials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: %g}]\n", mindlin_radius, density, young * stiffer, poisson);
+    put(&t, "effects:\n%s\nmaterials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: %g}]\n", mindlin_radius, density,
+        young * stiffer, poisson);
     put(&t, "interactions: [{between: default, normal_damping_ratio: 0, friction_static: %g}]\n", mu);
     put(&t, "particles:\n  - name: p\n    material: m\n    generator: list\n    items:\n");
     put_grain(&t, radius, (double[]){-radius, 0, 0}, (double[]){0.5 * vn, 0.5 * vt, 0}, (double[]){0, 0, 0});
@@ -207,7 +212,8 @@ static void test_linear_stick(void **state)
     put(&t, "effects:\n  - {slot: normal, law: linear}\n  - {slot: tangential, law: coulomb_linear, lever_arm: radius}\nmaterials:\n");
     for (int k = 0; k < 3; k++)
         put(&t, "  - {name: m%d, density_kg_m3: %.17g, youngs_modulus_pa: %.17g, poissons_ratio: %.17g}\n", k, density, young, poisson);
-    put(&t, "interactions:\n  - {between: default, normal_stiffness_n_m: 1.0e5, tangential_stiffness_n_m: 1.0e5, normal_damping_ratio: 0, friction_static: 1000}\n");
+    put(&t, "interactions:\n  - {between: default, normal_stiffness_n_m: 1.0e5, tangential_stiffness_n_m: 1.0e5, normal_damping_ratio: 0, "
+            "friction_static: 1000}\n");
     for (int k = 0; k < 3; k++) {
         snprintf(words[k], sizeof words[k], "tangential_stiffness_n_m: %.17g", ratios[k] * kn);
         put(&t, "  - {between: [m%d, floor], %s}\n", k, words[k]);
@@ -231,9 +237,9 @@ static void test_linear_stick(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_slide_to_roll),   cmocka_unit_test(test_incline),        cmocka_unit_test(test_dynamic_friction),
+        cmocka_unit_test(test_slide_to_roll),         cmocka_unit_test(test_incline),      cmocka_unit_test(test_dynamic_friction),
         cmocka_unit_test(test_sliding_stays_sliding), cmocka_unit_test(test_static_limit), cmocka_unit_test(test_oblique_printed),
-        cmocka_unit_test(test_oblique_mindlin), cmocka_unit_test(test_oblique_pair),   cmocka_unit_test(test_linear_stick),
+        cmocka_unit_test(test_oblique_mindlin),       cmocka_unit_test(test_oblique_pair), cmocka_unit_test(test_linear_stick),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,11 +4,13 @@
 static const double young = 1.0e9, density = 2500.0, radius = 1.0e-3;
 static const double none[3] = {0, 0, 0};
 
-static text head(void)
+static text head(double damping)
 {
     text t = {0};
-    put(&t, "effects: [{slot: normal, law: hertz}]\nmaterials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: 0.3}]\n", density, young);
-    put(&t, "interactions: [{between: default, normal_damping_ratio: 0}]\nparticles:\n");
+    put(&t,
+        "effects: [{slot: normal, law: hertz}]\nmaterials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: 0.3}]\n",
+        density, young);
+    put(&t, "interactions: [{between: default, normal_damping_ratio: %g}]\nparticles:\n", damping);
     return t;
 }
 
@@ -28,13 +30,14 @@ static void test_fixed(void **state)
 {
     (void)state;
     double v = 1.0;
-    text t = head();
+    text t = head(0.0);
     put_group(&t, "held", "fixed", (double[]){radius, 0, 0}, none);
     put_group(&t, "flying", "free", (double[]){-radius, 0, 0}, (double[]){v, 0, 0});
     physics_case c = case_open(&t);
     case_run(&c, 500, duration(v) / 1000);
     NEAR(case_get(&c, "velocity", 1, 0), 0.0, 4e-3 * v); /* turning point at half the duration */
-    NEAR(case_get(&c, "position", 1, 0), -radius + hertz_overlap(young / (2.0 * 0.91), 0.5 * radius, sphere_mass(density, radius), v), 1e-6 * radius);
+    NEAR(case_get(&c, "position", 1, 0), -radius + hertz_overlap(young / (2.0 * 0.91), 0.5 * radius, sphere_mass(density, radius), v),
+         1e-6 * radius);
     case_run(&c, 510, duration(v) / 1000);
     RELATIVE(case_get(&c, "velocity", 1, 0), -v, 2e-6);
     double *x = case_field(&c, "position"), *u = case_field(&c, "velocity");
@@ -44,11 +47,25 @@ static void test_fixed(void **state)
     case_close(&c);
 }
 
+/* Damping knows the mass of the free one alone: restitution is that of the ratio. */
+static void test_damped_hit(void **state)
+{
+    (void)state;
+    double v = 1.0;
+    text t = head(0.3);
+    put_group(&t, "held", "fixed", (double[]){radius, 0, 0}, none);
+    put_group(&t, "flying", "free", (double[]){-radius, 0, 0}, (double[]){v, 0, 0});
+    physics_case c = case_open(&t);
+    case_run(&c, 12000, duration(v) / 4000);
+    NEAR(case_get(&c, "velocity", 1, 0), -hertz_restitution(0.3) * v, 3e-4);
+    case_close(&c);
+}
+
 static void test_prescribed_hits(void **state)
 {
     (void)state;
     double u = 0.8;
-    text t = head();
+    text t = head(0.0);
     put_group(&t, "pushed", "[{type: constant, velocity_m_s: [0.8, 0, 0]}]", (double[]){-radius, 0, 0}, none);
     put_group(&t, "hit", "free", (double[]){radius, 0, 0}, none);
     physics_case c = case_open(&t);
@@ -59,15 +76,18 @@ static void test_prescribed_hits(void **state)
     case_close(&c);
 }
 
-/* Sum of terms: a sinusoid and a constant; a rotation about a moving axis; a table. Positions are those of the closed form at every time. */
+/* Sum of terms: a sinusoid and a constant; a rotation about a moving axis; a table. Positions are those of the closed form at every time.
+ * */
 static void test_paths(void **state)
 {
     (void)state;
     const double omega = 2.0 * PI * 40.0, rate = 30.0, dt = 1.0e-4;
-    text t = head();
-    put_group(&t, "swung", "[{type: sinusoid, direction: [0, 3, 4], amplitude_m: 0.002, frequency_hz: 40}, {type: constant, velocity_m_s: [0.1, 0, 0]}]",
+    text t = head(0.0);
+    put_group(&t, "swung",
+              "[{type: sinusoid, direction: [0, 3, 4], amplitude_m: 0.002, frequency_hz: 40}, {type: constant, velocity_m_s: [0.1, 0, 0]}]",
               none, none);
-    put_group(&t, "turned", "[{type: rotation, point_m: [0.1, 0, 0], axis: [0, 0, 2], rate_rad_s: 30}, {type: constant, velocity_m_s: [0, 0, 0.2]}]",
+    put_group(&t, "turned",
+              "[{type: rotation, point_m: [0.1, 0, 0], axis: [0, 0, 2], rate_rad_s: 30}, {type: constant, velocity_m_s: [0, 0, 0.2]}]",
               (double[]){0.12, 0, 0.01}, none);
     put_group(&t, "tabled", "[{type: table, time_s: [0.01, 0.03], velocity_m_s: [[0, 0, 0], [0, 0.4, 0]]}]", (double[]){0.2, 0, 0}, none);
     put(&t, "output: {fields: [position, spin]}\n");
@@ -96,7 +116,7 @@ static void test_paths(void **state)
 static void test_prescribed_pair(void **state)
 {
     (void)state;
-    text t = head();
+    text t = head(0.0);
     put_group(&t, "a", "fixed", none, none);
     put_group(&t, "b", "[{type: constant, velocity_m_s: [0, 0, 0]}]", (double[]){1.5e-3, 0, 0}, none);
     physics_case c = case_open(&t);
@@ -113,9 +133,10 @@ static void test_stages(void **state)
 {
     (void)state;
     const double dt = 1.0e-4;
-    text t = head();
+    text t = head(0.0);
     put_group(&t, "p", "[{type: constant, velocity_m_s: [0.5, 0, 0]}]", none, none);
-    put(&t, "gravity_m_s2: [0, 0, -10]\nstages:\n  - {name: a, until: {steps: 100}}\n  - {name: b, until: {steps: 100}, change: {particles: [{name: p, motion: free}]}}\n"
+    put(&t, "gravity_m_s2: [0, 0, -10]\nstages:\n  - {name: a, until: {steps: 100}}\n  - {name: b, until: {steps: 100}, change: "
+            "{particles: [{name: p, motion: free}]}}\n"
             "  - {name: c, until: {steps: 100}, change: {particles: [{name: p, motion: fixed}]}}\n"
             "  - {name: d, until: {steps: 100}, change: {particles: [{name: p, motion: free}]}}\n");
     physics_case c = case_open(&t);
@@ -148,8 +169,8 @@ static void test_stages(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fixed), cmocka_unit_test(test_prescribed_hits), cmocka_unit_test(test_paths), cmocka_unit_test(test_prescribed_pair),
-        cmocka_unit_test(test_stages),
+        cmocka_unit_test(test_fixed), cmocka_unit_test(test_damped_hit),      cmocka_unit_test(test_prescribed_hits),
+        cmocka_unit_test(test_paths), cmocka_unit_test(test_prescribed_pair), cmocka_unit_test(test_stages),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

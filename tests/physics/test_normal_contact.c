@@ -24,7 +24,8 @@ static text head(const pair_material *m, const char *law, const char *interactio
 {
     text t = {0};
     put(&t, "effects: [{slot: normal, law: %s}]\n", law);
-    put(&t, "materials: [{name: m, density_kg_m3: %.17g, youngs_modulus_pa: %.17g, poissons_ratio: %.17g}]\n", m->density, m->young, m->poisson);
+    put(&t, "materials: [{name: m, density_kg_m3: %.17g, youngs_modulus_pa: %.17g, poissons_ratio: %.17g}]\n", m->density, m->young,
+        m->poisson);
     put(&t, "interactions: [%s]\n", interaction);
     return t;
 }
@@ -44,8 +45,8 @@ static physics_case one_pair(const pair_material *m, double v)
     return case_open(&t);
 }
 
-/* Follows the only contact of the case to its end: deepest overlap (with the parabola through the three largest samples), largest force, and
- * the time at which the overlap returns to zero. `wall`: the gap is the height above z = 0. */
+/* Follows the only contact of the case to its end: deepest overlap (with the parabola through the three largest samples), largest force,
+ * and the time at which the overlap returns to zero. `wall`: the gap is the height above z = 0. */
 typedef struct impact {
     double overlap, force, duration;
 } impact;
@@ -273,7 +274,8 @@ static void test_linear_restitution(void **state)
         double e = exp(-xi / root * atan2(2.0 * xi * root, 2.0 * xi * xi - 1.0));
         NEAR(linear_restitution(xi), e, 1e-14);
         NEAR(linear_damping_ratio(e), xi, 1e-10);
-        snprintf(interaction, sizeof interaction, "{between: default, normal_damping_ratio: %.17g, normal_stiffness_n_m: %.17g}", xi, stiffness);
+        snprintf(interaction, sizeof interaction, "{between: default, normal_damping_ratio: %.17g, normal_stiffness_n_m: %.17g}", xi,
+                 stiffness);
         /* the damper acts at once at the first touch: first order, xi omega dt = xi pi/8000 */
         NEAR(restitution_seen(&sand, "linear", interaction, 1.0, PI / omega, 8000), e, 1e-3);
     }
@@ -282,15 +284,9 @@ static void test_linear_restitution(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_elastic_pair),
-        cmocka_unit_test(test_elastic_wall),
-        cmocka_unit_test(test_unequal_pair),
-        cmocka_unit_test(test_chung_and_ooi),
-        cmocka_unit_test(test_restitution),
-        cmocka_unit_test(test_largest_damped_overlap),
-        cmocka_unit_test(test_inverse_restitution),
-        cmocka_unit_test(test_linear_elastic),
-        cmocka_unit_test(test_linear_restitution),
+        cmocka_unit_test(test_elastic_pair),        cmocka_unit_test(test_elastic_wall),   cmocka_unit_test(test_unequal_pair),
+        cmocka_unit_test(test_chung_and_ooi),       cmocka_unit_test(test_restitution),    cmocka_unit_test(test_largest_damped_overlap),
+        cmocka_unit_test(test_inverse_restitution), cmocka_unit_test(test_linear_elastic), cmocka_unit_test(test_linear_restitution),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

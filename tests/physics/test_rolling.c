@@ -1,10 +1,11 @@
-/* Rolling resistance on a plane against closed forms: both laws braking to a stop and on a slope, and the elastic-plastic law's own swing. */
+/* Rolling resistance on a plane against closed forms: both laws braking to a stop and on a slope, and the elastic-plastic law's own swing.
+ * */
 #include "on_plane.h"
 
-#define EFFECTS(rolling) "  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin}\n  - {slot: rolling, law: " rolling "}\n"
+#define EFFECTS(rolling)  "  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin}\n  - {slot: rolling, law: " rolling "}\n"
 #define ROUGH(resistance) "normal_damping_ratio: 0.3, friction_static: 0.5, rolling_friction: " resistance
 
-#define DT 1.0e-5
+#define DT                1.0e-5
 
 static const double v0 = 0.2;
 
@@ -18,8 +19,8 @@ static double brake(double resistance, double s)
 static void check_stop(const char *effects, double tremble)
 {
     double s = arm_share(0.0), w = v0 / (radius * s), resistance[] = {0.02, 0.05, 0.1};
-    const lane lanes[] = {{ROUGH("0.02"), v0, 0, 0, w, 0}, {ROUGH("0.05"), v0, 0, 0, w, 0}, {ROUGH("0.1"), v0, 0, 0, w, 0},
-                          {ROUGH("0.1"), 0, v0, -w, 0, 0}};
+    const lane lanes[] = {
+        {ROUGH("0.02"), v0, 0, 0, w, 0}, {ROUGH("0.05"), v0, 0, 0, w, 0}, {ROUGH("0.1"), v0, 0, 0, w, 0}, {ROUGH("0.1"), 0, v0, -w, 0, 0}};
     physics_case c = lanes_open(effects, 0.0, lanes, 4);
     double early = 0.2;
     case_run(&c, (int64_t)round(early / DT), DT);
@@ -59,8 +60,10 @@ static void test_incline(void **state)
     char words[4][256];
     lane lanes[4] = {{0}};
     for (int k = 0; k < 4; k++) {
-        snprintf(words[k], sizeof words[k], "normal_damping_ratio: 0.3, tangential_damping_ratio: 0.5, rolling_damping_ratio: 2, friction_static: 0.5, "
-                 "rolling_friction: %.17g", resistance[k]);
+        snprintf(words[k], sizeof words[k],
+                 "normal_damping_ratio: 0.3, tangential_damping_ratio: 0.5, rolling_damping_ratio: 2, friction_static: 0.5, "
+                 "rolling_friction: %.17g",
+                 resistance[k]);
         lanes[k].interaction = words[k];
     }
     physics_case c = lanes_open(EFFECTS("elastic_plastic"), slope, lanes, 4);
@@ -69,7 +72,8 @@ static void test_incline(void **state)
         double a = k < 2 ? 0.0 : (G * sin(slope) - resistance[k] * G * cos(slope) / s) / (1.0 + 0.4 / (s * s));
         double free = 5.0 / 7.0 * G * sin(slope);
         /* until its spring bears mu_r r N the sphere rolls freely, over an angle of mu_r r N/k_r */
-        double angle = resistance[k] * radius * lane_mass() * G * cos(slope) / (8.0 * plane_shear_modulus() * sqrt(radius * rest_overlap(slope)) * radius * radius);
+        double angle = resistance[k] * radius * lane_mass() * G * cos(slope) /
+                       (8.0 * plane_shear_modulus() * sqrt(radius * rest_overlap(slope)) * radius * radius);
         double ahead = sqrt(2.0 * free * angle * radius);
         NEAR(vx_of(&c, k), a * time, k < 2 ? 1e-9 : ahead);
         NEAR(x_of(&c, k), 0.5 * a * time * time, k < 2 ? 5.0 * angle * radius : ahead * time);
@@ -84,7 +88,8 @@ static void test_incline(void **state)
 static double swing(double xi, double w0, double time)
 {
     double d = rest_overlap(0.0), m = lane_mass(), j = 0.4 * m * radius * radius, g8 = 8.0 * plane_shear_modulus();
-    double k = g8 * sqrt(radius * d) * radius * radius, c = 2.0 * xi * sqrt(g8 * 1.4 * m * radius * radius * sqrt(radius)) * radius * pow(d, 0.25);
+    double k = g8 * sqrt(radius * d) * radius * radius,
+           c = 2.0 * xi * sqrt(g8 * 1.4 * m * radius * radius * sqrt(radius)) * radius * pow(d, 0.25);
     double delta = 0.5 * c / j, omega = sqrt(k / j - delta * delta);
     return w0 * exp(-delta * time) * (cos(omega * time) - delta / omega * sin(omega * time));
 }
@@ -100,7 +105,8 @@ static double swing_period(void)
 static void check_swing(const char *effects, bool twist)
 {
     double w0 = 1.0, dt = swing_period() / 4000.0, ratio[] = {0.0, 0.1, 0.1, 0.1};
-    const lane lanes[] = {{SWING("0"), 0, 0, 0, w0, 0}, {SWING("0.1"), 0, 0, 0, w0, 0}, {SWING("0.1"), 0, 0, w0, 0, 0}, {SWING("0.1"), 0, 0, 0, 0, w0}};
+    const lane lanes[] = {
+        {SWING("0"), 0, 0, 0, w0, 0}, {SWING("0.1"), 0, 0, 0, w0, 0}, {SWING("0.1"), 0, 0, w0, 0, 0}, {SWING("0.1"), 0, 0, 0, 0, w0}};
     const int axis[] = {1, 1, 0, 2};
     physics_case c = lanes_open(effects, 0.0, lanes, 4);
     for (int part = 1; part <= 6; part++) {
@@ -128,7 +134,8 @@ static void test_twist_brake(void **state)
 {
     (void)state;
     double w0 = 100.0, time = 0.05;
-    const lane lanes[] = {{"normal_damping_ratio: 0.3, rolling_friction: 0.01", 0, 0, 0, 0, w0}, {"normal_damping_ratio: 0.3, rolling_friction: 0.02", 0, 0, 0, 0, -w0}};
+    const lane lanes[] = {{"normal_damping_ratio: 0.3, rolling_friction: 0.01", 0, 0, 0, 0, w0},
+                          {"normal_damping_ratio: 0.3, rolling_friction: 0.02", 0, 0, 0, 0, -w0}};
     physics_case c = lanes_open(EFFECTS("elastic_plastic"), 0.0, lanes, 2);
     case_run(&c, (int64_t)round(time / DT), DT);
     NEAR(case_get(&c, "spin", 0, 2), w0 - 2.5 * 0.01 * G / radius * time, 2e-4 * w0);
@@ -139,8 +146,12 @@ static void test_twist_brake(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stop_elastic_plastic), cmocka_unit_test(test_stop_constant_torque), cmocka_unit_test(test_incline),
-        cmocka_unit_test(test_swing),                cmocka_unit_test(test_swing_without_twist),  cmocka_unit_test(test_twist_brake),
+        cmocka_unit_test(test_stop_elastic_plastic),
+        cmocka_unit_test(test_stop_constant_torque),
+        cmocka_unit_test(test_incline),
+        cmocka_unit_test(test_swing),
+        cmocka_unit_test(test_swing_without_twist),
+        cmocka_unit_test(test_twist_brake),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

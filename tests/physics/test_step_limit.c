@@ -24,7 +24,7 @@ static double sliding_edge(double xi, double s)
 
 static const double ratios[] = {0.0, 0.1, 0.5, 1.0};
 
-#define NORMAL "  - {slot: normal, law: hertz}\n"
+#define NORMAL  "  - {slot: normal, law: hertz}\n"
 #define SLIDING NORMAL "  - {slot: tangential, law: mindlin}\n"
 
 static physics_case one_lane(const char *effects, double xi, double vx)

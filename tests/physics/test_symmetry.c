@@ -3,9 +3,10 @@
 
 static const double radius = 1.0e-3, speed = 0.3, dt = 5.0e-6;
 
-#define EFFECTS "effects:\n  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin}\n  - {slot: rolling, law: elastic_plastic}\n"
+#define EFFECTS \
+    "effects:\n  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin}\n  - {slot: rolling, law: elastic_plastic}\n"
 #define MATERIAL "materials: [{name: m, density_kg_m3: 2500, youngs_modulus_pa: 1.0e7, poissons_ratio: 0.3}]\n"
-#define ROUGH                                                                                                                      \
+#define ROUGH \
     "interactions: [{between: default, normal_damping_ratio: 0.1, friction_static: 0.5, friction_dynamic: 0.4, rolling_friction: 0.1}]\n"
 
 static text head(void)
@@ -120,7 +121,8 @@ static void test_order(void **state)
     case_close(&b);
 }
 
-/* Swapping the two of an impact (unequal, frictional, spinning) swaps the result to the bit: the smaller one owns the contact either way. */
+/* Swapping the two of an impact (unequal, frictional, spinning) swaps the result to the bit: the smaller one owns the contact either way.
+ * */
 static void test_swapped_pair(void **state)
 {
     (void)state;
@@ -154,7 +156,8 @@ static void test_rest(void **state)
     (void)state;
     text t = head();
     put(&t, "walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]\n");
-    put(&t, "particles:\n  - name: p\n    material: m\n    generator: lattice\n    counts: [3, 3, 3]\n    spacing_m: 2.0e-3\n    radius_m: 1.0e-3\n"
+    put(&t, "particles:\n  - name: p\n    material: m\n    generator: lattice\n    counts: [3, 3, 3]\n    spacing_m: 2.0e-3\n    radius_m: "
+            "1.0e-3\n"
             "    origin_m: [0, 0, 1.0e-3]\n");
     physics_case c = case_open(&t);
     double *before = case_field(&c, "position");
@@ -196,8 +199,10 @@ static void test_plane_stays_plane(void **state)
 {
     (void)state;
     text t = head();
-    put(&t, "dimensions: 2\ngravity_m_s2: [0.3, -9.81, 0]\nwalls: [{name: tray, shape: box, low_m: [0, 0, -0.01], high_m: [0.02, 0.02, 0.01], open: [y_high]}]\n");
-    put(&t, "particles:\n  - name: p\n    material: m\n    generator: lattice\n    lattice: triangular\n    counts: [6, 1, 4]\n    spacing_m: 2.3e-3\n"
+    put(&t, "dimensions: 2\ngravity_m_s2: [0.3, -9.81, 0]\nwalls: [{name: tray, shape: box, low_m: [0, 0, -0.01], high_m: [0.02, 0.02, "
+            "0.01], open: [y_high]}]\n");
+    put(&t, "particles:\n  - name: p\n    material: m\n    generator: lattice\n    lattice: triangular\n    counts: [6, 1, 4]\n    "
+            "spacing_m: 2.3e-3\n"
             "    radius_m: 1.0e-3\n    origin_m: [2.0e-3, 1.5e-3, 0]\n    spin_rad_s: [0, 0, 50]\n    velocity_m_s: [0.2, -0.3, 0]\n");
     physics_case c = case_open(&t);
     run_touching(&c, 8000);
@@ -249,9 +254,14 @@ static void test_periodic(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_mirror),      cmocka_unit_test(test_rotation),          cmocka_unit_test(test_order),
-        cmocka_unit_test(test_swapped_pair), cmocka_unit_test(test_rest),             cmocka_unit_test(test_rest_apart),
-        cmocka_unit_test(test_plane_stays_plane), cmocka_unit_test(test_periodic),
+        cmocka_unit_test(test_mirror),
+        cmocka_unit_test(test_rotation),
+        cmocka_unit_test(test_order),
+        cmocka_unit_test(test_swapped_pair),
+        cmocka_unit_test(test_rest),
+        cmocka_unit_test(test_rest_apart),
+        cmocka_unit_test(test_plane_stays_plane),
+        cmocka_unit_test(test_periodic),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

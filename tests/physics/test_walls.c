@@ -1,4 +1,5 @@
-/* Walls: prescribed motions against their closed forms, faces, edges and corners of rectangles and discs, seams, boxes, and what the wall feels. */
+/* Walls: prescribed motions against their closed forms, faces, edges and corners of rectangles and discs, seams, boxes, and what the wall
+ * feels. */
 #include "case.h"
 
 static const double young = 1.0e7, density = 2500.0, radius = 1.0e-3;
@@ -22,6 +23,11 @@ static text head(const char *effects, const char *interaction)
     return t;
 }
 
+/* Far from everything: cases with as many walls share a program. */
+#define TWO_MORE                                                                         \
+    "  - {name: far, shape: rectangle, corners_m: [[9, 0, 0], [10, 0, 0], [9, 1, 0]]}\n" \
+    "  - {name: farther, shape: rectangle, corners_m: [[19, 0, 0], [20, 0, 0], [19, 1, 0]]}\n"
+
 static void put_group(text *t)
 {
     put(t, "particles:\n  - name: p\n    material: m\n    generator: list\n    items:\n");
@@ -30,7 +36,7 @@ static void put_group(text *t)
 static const double none[3] = {0, 0, 0};
 
 #define FRICTION "  - {slot: tangential, law: mindlin}\n"
-#define ROLLING "  - {slot: rolling, law: elastic_plastic}\n"
+#define ROLLING  "  - {slot: rolling, law: elastic_plastic}\n"
 
 /* ---- motions ---- */
 
@@ -40,7 +46,9 @@ static void test_constant(void **state)
     (void)state;
     double u = 0.5, duration = hertz_duration(modulus(), radius, sphere_mass(density, radius), u);
     text t = head("", "normal_damping_ratio: 0");
-    put(&t, "walls: [{name: w, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1], motion: [{type: constant, velocity_m_s: [3, 0, %g]}]}]\n", u);
+    put(&t,
+        "walls: [{name: w, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1], motion: [{type: constant, velocity_m_s: [3, 0, %g]}]}]\n",
+        u);
     put_group(&t);
     put_grain(&t, radius, (double[]){0, 0, radius}, none, none);
     physics_case c = case_open(&t);
@@ -50,7 +58,8 @@ static void test_constant(void **state)
     case_close(&c);
 }
 
-/* A grain that lies on a plate is carried by it, and follows it while the acceleration stays below g: position within the overlap's variation. */
+/* A grain that lies on a plate is carried by it, and follows it while the acceleration stays below g: position within the overlap's
+ * variation. */
 #define CARRY_DT 1.0e-5
 static physics_case carried(const char *motion)
 {
@@ -67,8 +76,10 @@ static void test_sinusoid(void **state)
     (void)state;
     const double amplitude = 1.0e-4, frequency = 20.0, phase = -0.5 * PI, omega = 2.0 * PI * frequency; /* 1.58 m/s2 */
     char motion[256];
-    snprintf(motion, sizeof motion, "{type: sinusoid, direction: [0, 0, 1], amplitude_m: %g, frequency_hz: %g, phase_rad: %.17g}, "
-             "{type: constant, velocity_m_s: [0, 0, 0.01]}", amplitude, frequency, phase);
+    snprintf(motion, sizeof motion,
+             "{type: sinusoid, direction: [0, 0, 1], amplitude_m: %g, frequency_hz: %g, phase_rad: %.17g}, "
+             "{type: constant, velocity_m_s: [0, 0, 0.01]}",
+             amplitude, frequency, phase);
     physics_case c = carried(motion);
     /* the wall starts at -A: let the grain drop on it and calm down */
     case_run(&c, 5000, CARRY_DT);
@@ -88,8 +99,9 @@ static void test_table(void **state)
 {
     (void)state;
     physics_case c = carried("{type: table, time_s: [0.02, 0.04, 0.07], velocity_m_s: [[0, 0, 0], [0, 0, 0.05], [0, 0, -0.01]]}");
-    const double at[] = {0.02, 0.03, 0.04, 0.05, 0.08}, way[] = {0.0, 0.5 * 0.01 * 0.025, 0.5 * 0.02 * 0.05, 0.5 * 0.02 * 0.05 + 0.01 * 0.5 * (0.05 + 0.03),
-                                                                0.5 * 0.02 * 0.05 + 0.03 * 0.5 * (0.05 - 0.01) - 0.01 * 0.01};
+    const double at[] = {0.02, 0.03, 0.04, 0.05, 0.08},
+                 way[] = {0.0, 0.5 * 0.01 * 0.025, 0.5 * 0.02 * 0.05, 0.5 * 0.02 * 0.05 + 0.01 * 0.5 * (0.05 + 0.03),
+                          0.5 * 0.02 * 0.05 + 0.03 * 0.5 * (0.05 - 0.01) - 0.01 * 0.01};
     const double speed[] = {0.0, 0.025, 0.05, 0.03, -0.01}, lift[] = {0.0, 2.5, -2.0, -2.0, 0.0};
     for (int k = 0; k < COUNT_OF(at); k++) {
         case_run(&c, (int64_t)round((at[k] - c.sim->time) / CARRY_DT), CARRY_DT);
@@ -107,8 +119,11 @@ static void test_rotation(void **state)
     (void)state;
     double rate = 20.0, arm = 0.05, mu = 0.3, m = sphere_mass(density, radius), dt = 1.0e-6, time = 1.0e-3;
     text t = head(FRICTION, "normal_damping_ratio: 0.5, friction_static: 0.3");
-    put(&t, "gravity_m_s2: [0, 0, -9.81]\nwalls: [{name: w, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1], "
-            "motion: [{type: rotation, point_m: [0.01, 0, 0], axis: [0, 0, 1], rate_rad_s: %g}, {type: constant, velocity_m_s: [0.5, 0, 0]}]}]\n", rate);
+    put(&t,
+        "gravity_m_s2: [0, 0, -9.81]\nwalls: [{name: w, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1], "
+        "motion: [{type: rotation, point_m: [0.01, 0, 0], axis: [0, 0, 1], rate_rad_s: %g}, {type: constant, velocity_m_s: [0.5, 0, "
+        "0]}]}]\n",
+        rate);
     put_group(&t);
     double z = radius - hertz_rest(modulus(), radius, m * 9.81);
     put_grain(&t, radius, (double[]){0.01 + arm, 0, z}, none, none);
@@ -130,8 +145,10 @@ static void test_paddle(void **state)
     (void)state;
     double rate = 10.0, arm = 0.05, u = rate * arm, duration = hertz_duration(modulus(), radius, sphere_mass(density, radius), u);
     text t = head("", "normal_damping_ratio: 0");
-    put(&t, "walls: [{name: w, shape: rectangle, corners_m: [[0, -0.02, 0], [0.1, -0.02, 0], [0, 0.02, 0]], "
-            "motion: [{type: rotation, point_m: [0, 0, 0], axis: [0, -1, 0], rate_rad_s: %g}]}]\n", rate);
+    put(&t,
+        "walls: [{name: w, shape: rectangle, corners_m: [[0, -0.02, 0], [0.1, -0.02, 0], [0, 0.02, 0]], "
+        "motion: [{type: rotation, point_m: [0, 0, 0], axis: [0, -1, 0], rate_rad_s: %g}]}]\n",
+        rate);
     put_group(&t);
     put_grain(&t, radius, (double[]){arm, 0, radius}, none, none);
     physics_case c = case_open(&t);
@@ -160,7 +177,8 @@ static void check_forces(const char *walls, const placed *rows, int count)
     physics_case c = case_open(&t);
     double *force = case_totals(&c, false);
     for (int k = 0; k < count; k++) {
-        double length = sqrt(rows[k].toward[0] * rows[k].toward[0] + rows[k].toward[1] * rows[k].toward[1] + rows[k].toward[2] * rows[k].toward[2]);
+        double length = sqrt(rows[k].toward[0] * rows[k].toward[0] + rows[k].toward[1] * rows[k].toward[1] +
+                             rows[k].toward[2] * rows[k].toward[2]);
         double expected = hertz(radius - rows[k].distance);
         for (int a = 0; a < 3; a++)
             NEAR(force[3 * k + a], expected * rows[k].toward[a] / length, 1e-9 * hertz(0.1 * radius));
@@ -174,15 +192,15 @@ static void test_rectangle(void **state)
     (void)state;
     const double near = 0.95e-3, d = 0.95e-3 / sqrt(2.0), e = 0.95e-3 / sqrt(3.0);
     const placed rows[] = {
-        {{0.02, 0.02, near}, {0, 0, 1}, near},                    /* face, from above */
-        {{0.08, 0.02, -near}, {0, 0, -1}, near},                  /* and from below */
-        {{0.05, 0.05 + near, 0}, {0, 1, 0}, near},                /* edge, in the plane */
-        {{0.03, 0.05 + d, d}, {0, 1, 1}, near},                   /* edge, from the side */
-        {{0.10 + d, 0.03, -d}, {1, 0, -1}, near},                 /* another edge, from below */
-        {{0.10 + e, 0.05 + e, e}, {1, 1, 1}, near},               /* corner */
-        {{-d, -d, 0}, {-1, -1, 0}, near},                         /* the opposite corner, in the plane */
-        {{0.06, 0.05 + 1.1e-3, 0}, {0, 1, 0}, 1.1e-3},            /* just off an edge */
-        {{0.02 + 5e-3, 0.02, 1.01e-3}, {0, 0, 1}, 1.01e-3},       /* just off the face */
+        {{0.02, 0.02, near}, {0, 0, 1}, near},              /* face, from above */
+        {{0.08, 0.02, -near}, {0, 0, -1}, near},            /* and from below */
+        {{0.05, 0.05 + near, 0}, {0, 1, 0}, near},          /* edge, in the plane */
+        {{0.03, 0.05 + d, d}, {0, 1, 1}, near},             /* edge, from the side */
+        {{0.10 + d, 0.03, -d}, {1, 0, -1}, near},           /* another edge, from below */
+        {{0.10 + e, 0.05 + e, e}, {1, 1, 1}, near},         /* corner */
+        {{-d, -d, 0}, {-1, -1, 0}, near},                   /* the opposite corner, in the plane */
+        {{0.06, 0.05 + 1.1e-3, 0}, {0, 1, 0}, 1.1e-3},      /* just off an edge */
+        {{0.02 + 5e-3, 0.02, 1.01e-3}, {0, 0, 1}, 1.01e-3}, /* just off the face */
     };
     check_forces("walls: [{name: w, shape: rectangle, corners_m: [[0, 0, 0], [0.1, 0, 0], [0, 0.05, 0]]}]\n", rows, COUNT_OF(rows));
 }
@@ -246,7 +264,8 @@ static void test_coplanar_seam(void **state)
                  "  - {name: a, shape: rectangle, corners_m: [[0, 0, 0], [0.05, 0, 0], [0, 0.05, 0]]}\n"
                  "  - {name: b, shape: rectangle, corners_m: [[0, 0, 0], [-0.05, 0, 0], [0, 0.05, 0]]}\n"
                  "  - {name: c, shape: rectangle, corners_m: [[0, 0, 0], [-0.05, 0, 0], [0, -0.05, 0]]}\n"
-                 "  - {name: d, shape: rectangle, corners_m: [[0, 0, 0], [0.05, 0, 0], [0, -0.05, 0]]}\n", rows, count);
+                 "  - {name: d, shape: rectangle, corners_m: [[0, 0, 0], [0.05, 0, 0], [0, -0.05, 0]]}\n",
+                 rows, count);
 }
 
 /* A convex ridge along y between two slopes of 45 degrees: above it one contact, with the ridge. */
@@ -255,15 +274,16 @@ static void test_convex_ridge(void **state)
     (void)state;
     const double near = 0.95e-3, d = near / sqrt(2.0);
     const placed rows[] = {
-        {{0, 0, near}, {0, 0, 1}, near},                                                  /* straight above the ridge */
-        {{near * sin(0.3), 0.01, near * cos(0.3)}, {sin(0.3), 0, cos(0.3)}, near},        /* leaning, still on the ridge */
-        {{d, 0.02, d}, {1, 0, 1}, near},                                                  /* where ridge and face meet */
-        {{0.01 + d, 0.03, -0.01 + d}, {1, 0, 1}, near},                                   /* on the right face */
-        {{-0.01 - d, 0.03, -0.01 + d}, {-1, 0, 1}, near},                                 /* on the left face */
+        {{0, 0, near}, {0, 0, 1}, near},                                           /* straight above the ridge */
+        {{near * sin(0.3), 0.01, near * cos(0.3)}, {sin(0.3), 0, cos(0.3)}, near}, /* leaning, still on the ridge */
+        {{d, 0.02, d}, {1, 0, 1}, near},                                           /* where ridge and face meet */
+        {{0.01 + d, 0.03, -0.01 + d}, {1, 0, 1}, near},                            /* on the right face */
+        {{-0.01 - d, 0.03, -0.01 + d}, {-1, 0, 1}, near},                          /* on the left face */
     };
     check_forces("walls:\n"
                  "  - {name: a, shape: rectangle, corners_m: [[0, -0.05, 0], [0.05, -0.05, -0.05], [0, 0.05, 0]]}\n"
-                 "  - {name: b, shape: rectangle, corners_m: [[0, -0.05, 0], [-0.05, -0.05, -0.05], [0, 0.05, 0]]}\n", rows, COUNT_OF(rows));
+                 "  - {name: b, shape: rectangle, corners_m: [[0, -0.05, 0], [-0.05, -0.05, -0.05], [0, 0.05, 0]]}\n" TWO_MORE,
+                 rows, COUNT_OF(rows));
 }
 
 /* Along a line across a seam the force never jumps; over coplanar faces it never changes. */
@@ -275,7 +295,7 @@ static void test_force_over_seam(void **state)
         double drop = ridge ? -0.01 : 0.0, before = 0.0;
         text t = head("", "normal_damping_ratio: 0");
         put(&t, "walls:\n  - {name: a, shape: rectangle, corners_m: [[0, -0.05, 0], [0.05, -0.05, %g], [0, 0.5, 0]]}\n", drop);
-        put(&t, "  - {name: b, shape: rectangle, corners_m: [[0, -0.05, 0], [-0.05, -0.05, %g], [0, 0.5, 0]]}\n", drop);
+        put(&t, "  - {name: b, shape: rectangle, corners_m: [[0, -0.05, 0], [-0.05, -0.05, %g], [0, 0.5, 0]]}\n" TWO_MORE, drop);
         put_group(&t);
         for (int s = 0; s < 60; s++)
             put_grain(&t, radius, (double[]){(s - 30) * apart, 4.0e-3 * s, radius - depth}, none, none);
@@ -365,7 +385,8 @@ static void test_weight(void **state)
     (void)state;
     text t = head("", "normal_damping_ratio: 0.5");
     put(&t, "gravity_m_s2: [0, 0, -9.81]\nwalls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]\n");
-    put(&t, "particles:\n  - name: p\n    material: m\n    generator: lattice\n    counts: [3, 3, 1]\n    spacing_m: 3.0e-3\n    radius_m: 1.0e-3\n"
+    put(&t, "particles:\n  - name: p\n    material: m\n    generator: lattice\n    counts: [3, 3, 1]\n    spacing_m: 3.0e-3\n    radius_m: "
+            "1.0e-3\n"
             "    origin_m: [0, 0, 1.0e-3]\n");
     physics_case c = case_open(&t);
     case_run(&c, 4000, 1.0e-5);
@@ -378,7 +399,8 @@ static void test_weight(void **state)
     assert_int_equal(case_contact_sums(&c).contacts, 9);
     RELATIVE(total, weight, 1e-9);
     /* and the springs hold 8/15 E* sqrt(r) d^(5/2) each */
-    RELATIVE(case_contact_sums(&c).elastic, 9.0 * 8.0 / 15.0 * modulus() * sqrt(radius) * pow(hertz_rest(modulus(), radius, weight / 9.0), 2.5), 1e-8);
+    RELATIVE(case_contact_sums(&c).elastic,
+             9.0 * 8.0 / 15.0 * modulus() * sqrt(radius) * pow(hertz_rest(modulus(), radius, weight / 9.0), 2.5), 1e-8);
     free(contacts);
     case_close(&c);
 }
@@ -386,11 +408,20 @@ static void test_weight(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_constant),      cmocka_unit_test(test_sinusoid),         cmocka_unit_test(test_table),
-        cmocka_unit_test(test_rotation),      cmocka_unit_test(test_paddle),           cmocka_unit_test(test_rectangle),
-        cmocka_unit_test(test_disc),          cmocka_unit_test(test_box),              cmocka_unit_test(test_coplanar_seam),
-        cmocka_unit_test(test_convex_ridge),  cmocka_unit_test(test_force_over_seam),  cmocka_unit_test(test_rolling_over_seam),
-        cmocka_unit_test(test_reaction),      cmocka_unit_test(test_weight),
+        cmocka_unit_test(test_constant),
+        cmocka_unit_test(test_sinusoid),
+        cmocka_unit_test(test_table),
+        cmocka_unit_test(test_rotation),
+        cmocka_unit_test(test_paddle),
+        cmocka_unit_test(test_rectangle),
+        cmocka_unit_test(test_disc),
+        cmocka_unit_test(test_box),
+        cmocka_unit_test(test_coplanar_seam),
+        cmocka_unit_test(test_convex_ridge),
+        cmocka_unit_test(test_force_over_seam),
+        cmocka_unit_test(test_rolling_over_seam),
+        cmocka_unit_test(test_reaction),
+        cmocka_unit_test(test_weight),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
