@@ -4,8 +4,8 @@
 #define ROTATION_OBSERVE_FIELDS(READ, WRITE)
 #define ROTATION_LIMIT_FIELDS(READ, WRITE)
 #define ROTATION_LOAD(launch, i) v3(R(0.0), R(0.0), R(0.0))
-#define ROTATION_STORE(launch, i, w)
-#define ROTATION_STORE_TORQUE(launch, k, owner_torque, other_torque)
+#define ROTATION_STORE(launch, i, w) (void)(w)
+#define ROTATION_STORE_TORQUE(launch, k, owner_torque, other_torque) (void)(owner_torque), (void)(other_torque)
 #define ROTATION_GATHER(launch, k, sign) v3(R(0.0), R(0.0), R(0.0))
 /* Without torques there is no room for the normal of a record: stiffnesses of a grain add up as if all its contacts stood in one line,
  * which is on the safe side. */

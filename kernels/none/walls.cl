@@ -1,6 +1,6 @@
 /* walls: none. */
 #define WALLS_PAIR_FIELDS(READ, WRITE)
-#define WALLS_CONTACT(launch, face, x, v, c, touch) walls_none(touch)
+#define WALLS_CONTACT(launch, face, x, v, c, touch) (void)(x), walls_none(touch)
 
 typedef struct wall_touch {
     vec3 point, velocity, pivot;
