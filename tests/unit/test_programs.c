@@ -1,0 +1,438 @@
+/* The programs that a scene can be assembled into: every law alone, every pair of laws and all at once are clean OpenCL C 1.2, a dozen of
+ * them on the device with the arguments that the descriptors name; and the structs that host and kernels share have one layout. */
+#include "simulation_case.h"
+
+#include "laws/laws.h"
+#include "program.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+static const law *const every_law[] = {
+    &law_composition_several,
+    &law_periodic_box,
+    &law_motion_groups,
+    &law_rotation_spin,
+    &law_hertz,
+    &law_linear,
+    &law_slip_single,
+    &law_slip_two,
+    &law_mindlin,
+    &law_coulomb_linear,
+    &law_elastic_plastic,
+    &law_constant_torque,
+    &law_walls_planes,
+    &law_walls_finite,
+    &law_local_damping,
+    &law_viscous_damping,
+    &law_orientation_quaternion,
+};
+#define LAWS (sizeof every_law / sizeof *every_law)
+
+/* What a scene derives from the laws that it names: friction and rolling turn grains, a friction law comes with a spring and the reverse. */
+static void complete(live_laws *live)
+{
+    static double options[SLOT_COUNT][LAW_OPTIONS_MAX];
+    if (live->law[SLOT_SLIP] && !live->law[SLOT_TANGENTIAL])
+        live->law[SLOT_TANGENTIAL] = &law_mindlin;
+    if (live->law[SLOT_TANGENTIAL] && !live->law[SLOT_SLIP])
+        live->law[SLOT_SLIP] = &law_slip_single;
+    if (live->law[SLOT_TANGENTIAL] || live->law[SLOT_ROLLING] || live->law[SLOT_ORIENTATION])
+        live->law[SLOT_ROTATION] = &law_rotation_spin;
+    live->law[SLOT_INTEGRATOR] = &law_semi_implicit_euler;
+    for (slot_id slot = 0; slot < SLOT_COUNT; slot++) {
+        live->option[slot] = live->law[slot] ? options[slot] : NULL;
+        for (int o = 0; live->law[slot] && o < LAW_OPTIONS_MAX; o++)
+            options[slot][o] = live->law[slot]->options[o].key ? live->law[slot]->options[o].fallback : 0.0;
+    }
+}
+
+static live_laws with(const law *a, const law *b)
+{
+    live_laws live;
+    memset(&live, 0, sizeof live);
+    if (a)
+        live.law[a->slot] = a;
+    if (b)
+        live.law[b->slot] = b;
+    complete(&live);
+    return live;
+}
+
+/* All slots filled, with the first or the second law where there are two. */
+static live_laws all_at_once(bool second)
+{
+    live_laws live;
+    memset(&live, 0, sizeof live);
+    for (size_t n = 0; n < LAWS; n++)
+        if (!live.law[every_law[n]->slot] || second)
+            live.law[every_law[n]->slot] = every_law[n];
+    complete(&live);
+    return live;
+}
+
+static char *assemble(const live_laws *live)
+{
+    const scene plain = {.material_count = 2, .wall_count = 3};
+    const char *files[64];
+    char constants[8192], *text = NULL;
+    live_constants(live, &plain, constants, sizeof constants);
+    MUST(program_assemble(constants, files, live_files(live, files, 64), NULL, &text, why));
+    return text;
+}
+
+static void describe(const live_laws *live, char *text, size_t size)
+{
+    text[0] = '\0';
+    for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
+        if (live->law[slot])
+            snprintf(text + strlen(text), size - strlen(text), " %s", live->law[slot]->name);
+}
+
+/* ---- offline ---- */
+
+static bool have_clang(void)
+{
+    return system("clang --version >/dev/null 2>&1") == 0;
+}
+
+/* A compiler at work on one program. */
+typedef struct compilation {
+    pid_t child;
+    char path[64], what[512];
+} compilation;
+
+static void start_clang(compilation *c, const live_laws *live)
+{
+    char *text = assemble(live);
+    describe(live, c->what, sizeof c->what);
+    strcpy(c->path, "/tmp/clast-program-XXXXXX");
+    int descriptor = mkstemp(c->path);
+    assert_true(descriptor >= 0);
+    FILE *file = fdopen(descriptor, "w");
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+    free(text);
+    c->child = fork();
+    if (c->child == 0) {
+        execlp("clang", "clang", "-x", "cl", "-cl-std=CL1.2", "-Xclang", "-finclude-default-header", "-Xclang", "-fdeclare-opencl-builtins",
+               "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter", "-Wno-unused-function", c->path, (char *)NULL);
+        _exit(127);
+    }
+    assert_true(c->child > 0);
+}
+
+static void end_clang(compilation *c)
+{
+    int ended = -1;
+    if (c->child <= 0)
+        return;
+    assert_int_equal(waitpid(c->child, &ended, 0), c->child);
+    unlink(c->path);
+    c->child = 0;
+    if (!WIFEXITED(ended) || WEXITSTATUS(ended) != 0)
+        fail_msg("clang refuses the program with%s", c->what);
+}
+
+#define AT_ONCE 2
+
+typedef struct compilations {
+    compilation slot[AT_ONCE];
+    int next, count;
+} compilations;
+
+static void compile_offline(compilations *all, const live_laws *live)
+{
+    compilation *c = &all->slot[all->next];
+    all->next = (all->next + 1) % AT_ONCE;
+    all->count++;
+    end_clang(c);
+    start_clang(c, live);
+}
+
+static void test_offline(void **state)
+{
+    (void)state;
+    compilations all;
+    memset(&all, 0, sizeof all);
+    if (!have_clang()) {
+        print_message("no clang: programs are not compiled offline\n");
+        skip();
+    }
+    live_laws live = with(NULL, NULL);
+    compile_offline(&all, &live);
+    for (int second = 0; second < 2; second++) {
+        live = all_at_once(second != 0);
+        compile_offline(&all, &live);
+    }
+    for (size_t a = 0; a < LAWS; a++)
+        for (size_t b = a; b < LAWS; b++) {
+            if (b > a && every_law[b]->slot == every_law[a]->slot)
+                continue;
+            live = with(every_law[a], every_law[b]);
+            compile_offline(&all, &live);
+        }
+    for (int n = 0; n < AT_ONCE; n++)
+        end_clang(&all.slot[n]);
+    print_message("%d programs\n", all.count);
+}
+
+/* Every law that a scene may name is among those tried here. */
+static void test_no_law_forgotten(void **state)
+{
+    (void)state;
+    for (const law *const *l = laws; *l; l++) {
+        bool found = false;
+        for (size_t n = 0; n < LAWS; n++)
+            found = found || every_law[n] == *l;
+        if (!found)
+            fail_msg("%s is not tried", (*l)->name);
+    }
+}
+
+/* Every kernel file is in some program. */
+static void test_no_file_forgotten(void **state)
+{
+    (void)state;
+    for (const kernel_file *f = kernels_embedded; f->name; f++) {
+        bool found = strcmp(f->name, "shared.h") == 0 || strcmp(f->name, "base.cl") == 0;
+        for (size_t n = 0; n <= LAWS && !found; n++) {
+            const char *files[64];
+            live_laws live = with(n < LAWS ? every_law[n] : NULL, NULL);
+            int count = live_files(&live, files, 64);
+            for (int k = 0; k < count; k++)
+                found = found || strcmp(files[k], f->name) == 0;
+        }
+        if (!found)
+            fail_msg("%s is in no program", f->name);
+    }
+}
+
+/* ---- on the device ---- */
+
+static void check_arguments(cl_program program, const live_laws *live, const char *kernel_name, const char *what)
+{
+    const char *names[64];
+    cl_int code;
+    cl_uint arguments = 0;
+    int count = launch_argument_names(live, kernel_name, names, 64);
+    cl_kernel kernel = clCreateKernel(program, kernel_name, &code);
+    assert_int_equal(code, CL_SUCCESS);
+    assert_int_equal(clGetKernelInfo(kernel, CL_KERNEL_NUM_ARGS, sizeof arguments, &arguments, NULL), CL_SUCCESS);
+    int first = (int)arguments - count;
+    char name[256];
+    for (int a = 0; a < (int)arguments; a++) {
+        assert_int_equal(clGetKernelArgInfo(kernel, (cl_uint)a, CL_KERNEL_ARG_NAME, sizeof name, name, NULL), CL_SUCCESS);
+        const char *expected = a >= first ? names[a - first] : a == 0 ? "launch" : "control";
+        if (strcmp(name, expected) != 0)
+            fail_msg("%s, program with%s: argument %d is %s, not %s", kernel_name, what, a, name, expected);
+    }
+    bool stage = strstr(kernel_name, "_stage") != NULL;
+    assert_int_equal(first, stage ? 2 : 1);
+    clReleaseKernel(kernel);
+}
+
+static void check_on_device(const live_laws *live)
+{
+    static const char *const kernels[] = {"pair_stage", "particle_stage", "pair_probe", "observe_records", "limit_records"};
+    char *text = assemble(live), what[512];
+    cl_program program;
+    describe(live, what, sizeof what);
+    MUST(program_build(case_device(), text, &program, why));
+    for (size_t k = 0; k < sizeof kernels / sizeof *kernels; k++)
+        check_arguments(program, live, kernels[k], what);
+    clReleaseProgram(program);
+    free(text);
+}
+
+static void test_on_device(void **state)
+{
+    (void)state;
+    const law *const pairs[][2] = {
+        {NULL, NULL},
+        {&law_hertz, NULL},
+        {&law_hertz, &law_walls_planes},
+        {&law_hertz, &law_mindlin},
+        {&law_linear, &law_coulomb_linear},
+        {&law_slip_two, &law_walls_finite},
+        {&law_elastic_plastic, &law_periodic_box},
+        {&law_constant_torque, &law_motion_groups},
+        {&law_composition_several, &law_orientation_quaternion},
+        {&law_local_damping, &law_rotation_spin},
+    };
+    for (size_t n = 0; n < sizeof pairs / sizeof *pairs; n++) {
+        live_laws live = with(pairs[n][0], pairs[n][1]);
+        check_on_device(&live);
+    }
+    for (int second = 0; second < 2; second++) {
+        live_laws live = all_at_once(second != 0);
+        check_on_device(&live);
+    }
+}
+
+/* ---- a scene pays for what it calls for ---- */
+
+static bool names_friction(const char *name)
+{
+    return strstr(name, "spin") || strstr(name, "torque") || strstr(name, "spring") || strstr(name, "sliding");
+}
+
+static void test_frictionless(void **state)
+{
+    (void)state;
+    sim_case c;
+    case_open(&c, "effects: [{slot: normal, law: hertz}]\n"
+                  "materials: [{name: m, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3}]\n"
+                  "interactions: [{between: default, restitution: 0.5, friction_static: 0.5}]\n"
+                  "particles: [{name: bed, material: m, generator: list, items: [{position_m: [0, 0, 0], radius_m: 0.01}]}]\n"
+                  "walls: [{name: floor, shape: plane, point_m: [0, 0, -1], normal: [0, 0, 1]}]\n"
+                  "stages: [{name: go, until: {steps: 1}, step_s: 1.0e-5}]\n");
+    for (int f = 0; f < c.sim->field_count; f++)
+        assert_false(names_friction(c.sim->field[f].field->name));
+    for (int k = 0; k < c.sim->kernel_count; k++) {
+        cl_uint arguments = 0;
+        char name[256];
+        assert_int_equal(clGetKernelInfo(c.sim->kernel[k].kernel, CL_KERNEL_NUM_ARGS, sizeof arguments, &arguments, NULL), CL_SUCCESS);
+        for (cl_uint a = 0; a < arguments; a++) {
+            assert_int_equal(clGetKernelArgInfo(c.sim->kernel[k].kernel, a, CL_KERNEL_ARG_NAME, sizeof name, name, NULL), CL_SUCCESS);
+            if (names_friction(name))
+                fail_msg("%s has an argument %s", c.sim->kernel[k].name, name);
+        }
+    }
+    char *text = assemble(&c.sim->live);
+    assert_null(strstr(text, "tangential_spring"));
+    assert_null(strstr(text, "rolling_spring"));
+    free(text);
+    case_close(&c);
+}
+
+/* ---- shared structs ---- */
+
+typedef struct shared_place {
+    const char *type, *member; /* member NULL: the size */
+    size_t host;
+} shared_place;
+
+#define SIZE(t)             \
+    {                       \
+#t, NULL, sizeof(t) \
+    }
+#define PLACE(t, m)            \
+    {                          \
+#t, #m, offsetof(t, m) \
+    }
+static const shared_place places[] = {
+    SIZE(clast_launch),
+    PLACE(clast_launch, gravity),
+    PLACE(clast_launch, drift),
+    PLACE(clast_launch, travel2),
+    PLACE(clast_launch, low),
+    PLACE(clast_launch, high),
+    PLACE(clast_launch, length),
+    PLACE(clast_launch, record_stride),
+    PLACE(clast_launch, particle_count),
+    PLACE(clast_launch, first_wall_group),
+    PLACE(clast_launch, step),
+    PLACE(clast_launch, face_row),
+    PLACE(clast_launch, mover_row),
+    PLACE(clast_launch, face_count),
+    PLACE(clast_launch, mover_count),
+    PLACE(clast_launch, spare),
+    SIZE(clast_control),
+    PLACE(clast_control, halt_step),
+    PLACE(clast_control, reason),
+    PLACE(clast_control, spare),
+    SIZE(clast_face),
+    PLACE(clast_face, origin),
+    PLACE(clast_face, normal),
+    PLACE(clast_face, e1),
+    PLACE(clast_face, e2),
+    PLACE(clast_face, extent),
+    PLACE(clast_face, velocity),
+    PLACE(clast_face, spin),
+    PLACE(clast_face, pivot),
+    PLACE(clast_face, shape),
+    PLACE(clast_face, party),
+    PLACE(clast_face, wall),
+    PLACE(clast_face, spare),
+    SIZE(clast_mover),
+    PLACE(clast_mover, shift),
+    PLACE(clast_mover, pivot),
+    PLACE(clast_mover, pivot_end),
+    PLACE(clast_mover, axis),
+    PLACE(clast_mover, sine),
+    PLACE(clast_mover, versine),
+    PLACE(clast_mover, velocity),
+    PLACE(clast_mover, spin),
+    SIZE(clast_level),
+    PLACE(clast_level, inverse_size),
+    PLACE(clast_level, cells),
+    PLACE(clast_level, first_cell),
+    SIZE(clast_grid),
+    PLACE(clast_grid, origin),
+    PLACE(clast_grid, radius_max),
+    PLACE(clast_grid, skin),
+    PLACE(clast_grid, level),
+    PLACE(clast_grid, level_count),
+    PLACE(clast_grid, cell_count),
+    PLACE(clast_grid, drop_outside),
+    PLACE(clast_grid, spare),
+};
+#define PLACES (sizeof places / sizeof *places)
+
+/* Writes back sizes and offsets in the order of `places`. */
+static char *place_kernel(void)
+{
+    char *text = NULL, *source = NULL;
+    size_t size = 0;
+    MUST(program_assemble("", NULL, 0, NULL, &text, why));
+    FILE *out = open_memstream(&source, &size);
+    assert_non_null(out);
+    fprintf(out, "%s\n__kernel void shared_places(__global ulong *restrict result)\n{\n", text);
+    for (size_t n = 0; n < PLACES; n++)
+        if (places[n].member)
+            fprintf(out, "    { %s s; result[%zu] = (ulong)((__private char *)&s.%s - (__private char *)&s); }\n", places[n].type, n,
+                    places[n].member);
+        else
+            fprintf(out, "    result[%zu] = sizeof(%s);\n", n, places[n].type);
+    fputs("}\n", out);
+    fclose(out);
+    free(text);
+    return source;
+}
+
+static void test_shared_structs(void **state)
+{
+    (void)state;
+    char *text = place_kernel();
+    cl_program program;
+    cl_int code;
+    cl_ulong result[PLACES];
+    size_t one = 1;
+    device *d = case_device();
+    MUST(program_build(d, text, &program, why));
+    cl_kernel kernel = clCreateKernel(program, "shared_places", &code);
+    assert_int_equal(code, CL_SUCCESS);
+    cl_mem mem = clCreateBuffer(d->context, CL_MEM_READ_WRITE, sizeof result, NULL, &code);
+    assert_int_equal(code, CL_SUCCESS);
+    assert_int_equal(clSetKernelArg(kernel, 0, sizeof mem, &mem), CL_SUCCESS);
+    assert_int_equal(clEnqueueNDRangeKernel(d->queue, kernel, 1, NULL, &one, &one, 0, NULL, NULL), CL_SUCCESS);
+    assert_int_equal(clEnqueueReadBuffer(d->queue, mem, CL_TRUE, 0, sizeof result, result, 0, NULL, NULL), CL_SUCCESS);
+    for (size_t n = 0; n < PLACES; n++)
+        if (result[n] != places[n].host)
+            fail_msg("%s.%s: %llu on the device, %zu on the host", places[n].type, places[n].member ? places[n].member : "(size)",
+                     (unsigned long long)result[n], places[n].host);
+    clReleaseMemObject(mem);
+    clReleaseKernel(kernel);
+    clReleaseProgram(program);
+    free(text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_no_law_forgotten), cmocka_unit_test(test_no_file_forgotten), cmocka_unit_test(test_offline),
+        cmocka_unit_test(test_on_device),        cmocka_unit_test(test_frictionless),      cmocka_unit_test(test_shared_structs),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
