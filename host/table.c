@@ -224,7 +224,7 @@ static status count_records(simulation *sim, const clast_launch *launch, failure
 }
 
 /* The generation that is not in use, and what both share, hold at least `records` and `slots`. Histories move in carry_histories. */
-static status fit_records(simulation *sim, int64_t old_record_stride, failure *why)
+static status fit_records(simulation *sim, failure *why)
 {
     contact_table *t = &sim->table;
     int64_t need = t->record_count;
@@ -238,7 +238,6 @@ static status fit_records(simulation *sim, int64_t old_record_stride, failure *w
     TRY(grow(sim, &t->match, old, bytes, why));
     t->record_capacity = capacity;
     t->record_stride = capacity;
-    (void)old_record_stride;
     return STATUS_OK;
 }
 
@@ -302,8 +301,9 @@ static status fill_slots(simulation *sim, const clast_launch *launch, failure *w
     return launch_run(sim, sort, "table_sort_slots", sim->count, GROUP, why);
 }
 
-/* Every history component of the old records into the new ones. Where nothing grew the force array holds the old component meanwhile. */
-static status carry_histories(simulation *sim, int64_t old_records, int64_t old_stride, failure *why)
+/* Every history of the old records into the new ones. Where nothing grew the force array, of three components as a history has at most, holds
+ * the old one meanwhile. */
+static status carry_histories(simulation *sim, int64_t old_stride, failure *why)
 {
     contact_table *t = &sim->table;
     cl_kernel carry = launch_kernel(sim, "table_carry");
@@ -322,14 +322,12 @@ static status carry_histories(simulation *sim, int64_t old_records, int64_t old_
         }
         if (grown)
             TRY(store_buffer(sim, &stored->mem, field_bytes(sim, field), field->name, why));
-        cl_mem scratch = store_find(sim, "force")->mem;
-        for (int c = 0; c < field->components; c++) {
-            if (!grown)
-                TRY(store_copy(sim, old, scratch, 8 * (uint64_t)(c * old_stride), 0, 8 * (uint64_t)old_records, why));
-            TRY(launch_set(carry, "table_carry", why, "mmmllii", t->match, grown ? old : scratch, stored->mem,
-                           (clast_i64)(grown ? c * old_stride : 0), (clast_i64)(c * t->record_stride), t->record_count, field->components > 1));
-            TRY(launch_run(sim, carry, "table_carry", t->record_count, GROUP, why));
-        }
+        cl_mem from = grown ? old : store_find(sim, "force")->mem;
+        if (!grown)
+            TRY(store_copy(sim, old, from, 0, 0, old_bytes, why));
+        TRY(launch_set(carry, "table_carry", why, "mmmlliii", t->match, from, stored->mem, (clast_i64)old_stride, (clast_i64)t->record_stride,
+                       t->record_count, field->components, field->components > 1));
+        TRY(launch_run(sim, carry, "table_carry", t->record_count, GROUP, why));
         if (grown)
             store_release(sim, &old, old_bytes);
     }
@@ -381,7 +379,7 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
     contact_table *t = &sim->table;
     double start = seconds();
     int old_wall_base = t->wall_base;
-    int64_t old_records = t->record_count, old_stride = t->record_stride, old_capacity = t->record_capacity;
+    int64_t old_stride = t->record_stride, old_capacity = t->record_capacity;
     set_grid(sim, drop_outside);
     TRY(fit_cells(sim, why));
     TRY(store_write(sim, t->grid, 0, sizeof t->grid_host, &t->grid_host, why));
@@ -390,11 +388,11 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
     launch.particle_count = (clast_i32)sim->count;
     TRY(permute_fields(sim, &launch, why));
     TRY(count_records(sim, &launch, why));
-    TRY(fit_records(sim, old_stride, why));
+    TRY(fit_records(sim, why));
     TRY(fill_records(sim, &launch, why));
     TRY(fill_slots(sim, &launch, why));
     TRY(match_records(sim, old_wall_base, why));
-    TRY(carry_histories(sim, old_records, old_stride, why));
+    TRY(carry_histories(sim, old_stride, why));
     TRY(finish(sim, why));
     TRY(fit_spare_generation(sim, old_capacity, why));
     sim->rebuilds++;

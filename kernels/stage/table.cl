@@ -267,16 +267,18 @@ __kernel void table_match(__global const int *restrict owner, __global const int
     }
 }
 
-/* Moves one component of a history, which stands at an offset in both buffers; `odd` ones change sign with the owner. */
-__kernel void table_carry(__global const int *restrict match, __global const real *restrict from, __global real *restrict to, const long from_offset,
-                          const long to_offset, const int record_count, const int odd)
+/* Moves a history, whose components stand `stride` apart in each buffer; `odd` ones change sign with the owner. */
+__kernel void table_carry(__global const int *restrict match, __global const real *restrict from, __global real *restrict to, const long from_stride,
+                          const long to_stride, const int record_count, const int components, const int odd)
 {
     int k = get_global_id(0);
     if (k >= record_count)
         return;
-    int m = match[k];
-    real value = m == 0 ? R(0.0) : from[from_offset + (m > 0 ? m : -m) - 1];
-    to[to_offset + k] = odd && m < 0 ? -value : value;
+    int m = match[k], old = (m > 0 ? m : -m) - 1;
+    for (int c = 0; c < components; c++) {
+        real value = m == 0 ? R(0.0) : AT(from, from_stride, c, old);
+        AT(to, to_stride, c, k) = odd && m < 0 ? -value : value;
+    }
 }
 
 /* Per chunk of grains the square of the largest displacement since the table was built, relative to the common one. */
