@@ -197,6 +197,13 @@ static status permute_fields(simulation *sim, const clast_launch *launch, failur
     return STATUS_OK;
 }
 
+/* Partners a grain that fit into the force array, which nobody reads while a table is built. */
+static int kept_partners(const simulation *sim)
+{
+    int64_t room = 2 * field_force.components * sim->table.record_stride / sim->stride; /* two words a real */
+    return room > 32 ? 32 : (int)room;
+}
+
 /* Owned pairs into work A, their starts into D, wall records' starts into E, slots of every grain into B. */
 static status count_records(simulation *sim, const clast_launch *launch, failure *why)
 {
@@ -204,7 +211,8 @@ static status count_records(simulation *sim, const clast_launch *launch, failure
     cl_mem position = store_find(sim, "position")->mem, radius = store_find(sim, "radius")->mem, id = store_find(sim, "id")->mem;
     cl_kernel count = launch_kernel(sim, "table_count"), walls = launch_kernel(sim, "table_count_walls");
     TRY(store_fill(sim, t->work[WORK_B], 4 * (uint64_t)sim->stride, why));
-    TRY(launch_set(count, "table_count", why, "Lmmmmmmm", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_A], t->work[WORK_B]));
+    TRY(launch_set(count, "table_count", why, "Lmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_A], t->work[WORK_B],
+                   store_find(sim, "force")->mem, kept_partners(sim)));
     TRY(launch_run(sim, count, "table_count", sim->stride, GROUP, why));
     TRY(scan(sim, t->work[WORK_A], t->work[WORK_D], sim->stride, why));
     t->wall_record_count = 0;
@@ -257,14 +265,14 @@ static status fit_slots(simulation *sim, int64_t slots, failure *why)
     return STATUS_OK;
 }
 
-static status fill_records(simulation *sim, const clast_launch *launch, failure *why)
+static status fill_records(simulation *sim, const clast_launch *launch, int room, failure *why)
 {
     contact_table *t = &sim->table;
     int next = 1 - t->now;
     cl_mem position = store_find(sim, "position")->mem, radius = store_find(sim, "radius")->mem, id = store_find(sim, "id")->mem;
     cl_kernel fill = launch_kernel(sim, "table_fill"), walls = launch_kernel(sim, "table_fill_walls"), pad = launch_kernel(sim, "table_pad");
-    TRY(launch_set(fill, "table_fill", why, "Lmmmmmmmm", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_D], t->owner[next],
-                   t->other[next]));
+    TRY(launch_set(fill, "table_fill", why, "Lmmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_D], t->owner[next],
+                   t->other[next], store_find(sim, "force")->mem, room));
     TRY(launch_run(sim, fill, "table_fill", sim->count, GROUP, why));
     TRY(launch_set(pad, "table_pad", why, "mmii", t->owner[next], t->other[next], t->pair_count, t->wall_base));
     TRY(launch_run(sim, pad, "table_pad", t->wall_base - t->pair_count, GROUP, why));
@@ -388,8 +396,9 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
     launch.particle_count = (clast_i32)sim->count;
     TRY(permute_fields(sim, &launch, why));
     TRY(count_records(sim, &launch, why));
+    int room = kept_partners(sim);
     TRY(fit_records(sim, why));
-    TRY(fill_records(sim, &launch, why));
+    TRY(fill_records(sim, &launch, room, why));
     TRY(fill_slots(sim, &launch, why));
     TRY(match_records(sim, old_wall_base, why));
     TRY(carry_histories(sim, old_stride, why));

@@ -127,10 +127,11 @@ INLINE bool table_pairs(const clast_launch *launch, real skin, int i, vec3 xi, r
         }                                                                                                                     \
     }
 
-/* Pairs owned by each grain, and slots each grain needs. slot_count must be zero before. */
+/* Pairs owned by each grain, and slots each grain needs. slot_count must be zero before. The first `room` partners of each grain are `kept`, so
+ * that most grains need not be searched for twice. */
 __kernel void table_count(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
                           __global const real *restrict position, __global const real *restrict radius, __global const int *restrict id,
-                          __global uint *restrict own_count, __global uint *restrict slot_count)
+                          __global uint *restrict own_count, __global uint *restrict slot_count, __global int *restrict kept, const int room)
 {
     int i = get_global_id(0);
     if (i >= launch.particle_count) {
@@ -142,6 +143,8 @@ __kernel void table_count(const clast_launch launch, __global const clast_grid *
     int id_i = id[i];
     uint found = 0;
 #define TABLE_COUNT(j)                                          \
+    if (found < (uint)room)                                     \
+        kept[(size_t)i * room + found] = j;                     \
     found++;                                                    \
     atomic_inc((volatile __global uint *)&slot_count[j])
     TABLE_FOR_PARTNERS(TABLE_COUNT)
@@ -152,7 +155,8 @@ __kernel void table_count(const clast_launch launch, __global const clast_grid *
 /* Writes the pairs of each grain, sorted by the partner's permanent id. */
 __kernel void table_fill(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
                          __global const real *restrict position, __global const real *restrict radius, __global const int *restrict id,
-                         __global const uint *restrict own_start, __global int *restrict owner, __global int *restrict other)
+                         __global const uint *restrict own_start, __global int *restrict owner, __global int *restrict other,
+                         __global const int *restrict kept, const int room)
 {
     int i = get_global_id(0);
     if (i >= launch.particle_count)
@@ -166,7 +170,15 @@ __kernel void table_fill(const clast_launch launch, __global const clast_grid *r
     for (; at > first && id[other[at - 1]] > id[j]; at--)           \
         other[at] = other[at - 1];                                  \
     other[at] = j
-    TABLE_FOR_PARTNERS(TABLE_WRITE)
+    int count = (int)(own_start[i + 1] - first);
+    if (count <= room) {
+        for (int m = 0; m < count; m++) {
+            int j = kept[(size_t)i * room + m];
+            TABLE_WRITE(j);
+        }
+    } else {
+        TABLE_FOR_PARTNERS(TABLE_WRITE)
+    }
     for (uint a = first; a < k; a++)
         owner[a] = i;
 }
