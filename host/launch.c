@@ -98,16 +98,28 @@ status launch_bind_stages(simulation *sim, failure *why)
     return STATUS_OK;
 }
 
+static status open_program(simulation *sim, const char *constants, const char *const *files, int count, cl_program *out, failure *why)
+{
+    char *text = NULL;
+    TRY(program_assemble(constants, files, count, sim->kernels_directory, &text, why));
+    status result = program_build(sim->device, text, out, why);
+    free(text);
+    return result;
+}
+
+/* Kernels that build tables are in a program of their own. */
+static bool is_of_table(const char *name)
+{
+    return strncmp(name, "table_", 6) == 0 || strncmp(name, "scan_", 5) == 0;
+}
+
 status launch_open(simulation *sim, failure *why)
 {
-    const char *files[64];
-    char constants[8192], *text = NULL;
+    const char *files[64], *table_files[LIVE_TABLE_FILES];
+    char constants[8192];
     live_constants(&sim->live, sim->scene, constants, sizeof constants);
-    int count = live_files(&sim->live, files, 64);
-    TRY(program_assemble(constants, files, count, sim->kernels_directory, &text, why));
-    status result = program_build(sim->device, text, &sim->program, why);
-    free(text);
-    TRY(result);
+    TRY(open_program(sim, constants, files, live_files(&sim->live, files, 64), &sim->program, why));
+    TRY(open_program(sim, "", table_files, live_table_files(&sim->live, table_files), &sim->table_program, why));
     static const char *const names[] = {"pair_stage",       "pair_probe",      "particle_stage",    "scan_chunks",       "scan_sums",
                                         "scan_write",       "table_bin",       "table_order",       "table_order_cells", "table_permute_real",
                                         "table_permute_int", "table_count",    "table_fill",        "table_pad",         "table_widths",
@@ -120,7 +132,7 @@ status launch_open(simulation *sim, failure *why)
         if (walls && !sim->live.law[SLOT_WALLS])
             continue;
         cl_int code;
-        cl_kernel kernel = clCreateKernel(sim->program, names[n], &code);
+        cl_kernel kernel = clCreateKernel(is_of_table(names[n]) ? sim->table_program : sim->program, names[n], &code);
         if (code != CL_SUCCESS)
             return fail(why, STATUS_DEVICE, "the device failed: kernel %s (%s)", names[n], device_error_name(code));
         sim->kernel[sim->kernel_count++] = (kernel_slot){names[n], kernel};
@@ -135,7 +147,9 @@ void launch_close(simulation *sim)
     sim->kernel_count = 0;
     if (sim->program)
         clReleaseProgram(sim->program);
-    sim->program = NULL;
+    if (sim->table_program)
+        clReleaseProgram(sim->table_program);
+    sim->program = sim->table_program = NULL;
 }
 
 cl_kernel launch_kernel(simulation *sim, const char *name)

@@ -124,8 +124,7 @@ static const char *none_file(slot_id slot)
 
 int live_files(const live_laws *live, const char **files, int max)
 {
-    static const char *const stages[] = {"stage/contact.cl", "stage/pair.cl",    "stage/particle.cl",
-                                         "stage/scan.cl",    "stage/table.cl",   "stage/observe.cl"};
+    static const char *const stages[] = {"stage/contact.cl", "stage/pair.cl", "stage/particle.cl", "stage/observe.cl"};
     int count = 0;
     for (slot_id slot = 0; slot < SLOT_COUNT; slot++) {
         const law *l = live->law[slot];
@@ -136,7 +135,17 @@ int live_files(const live_laws *live, const char **files, int max)
     }
     for (size_t s = 0; s < sizeof stages / sizeof *stages && count < max; s++)
         files[count++] = stages[s];
-    if (live->law[SLOT_WALLS] && count < max)
+    return count;
+}
+
+int live_table_files(const live_laws *live, const char **files)
+{
+    const law *periodic = live->law[SLOT_PERIODIC];
+    int count = 0;
+    files[count++] = periodic ? periodic->kernel_file : none_file(SLOT_PERIODIC);
+    files[count++] = "stage/scan.cl";
+    files[count++] = "stage/table.cl";
+    if (live->law[SLOT_WALLS])
         files[count++] = "stage/table_walls.cl";
     return count;
 }
@@ -167,8 +176,11 @@ void live_constants(const live_laws *live, const scene *scene, char *text, size_
             l->constants(live->option[slot], text, size);
     }
     used = strlen(text);
-    snprintf(text + used, size - used, "#define CONTACT_CONSTANTS %d\n#define PARTIES %d\n", live_constant_count(live),
-             scene->material_count + scene->wall_count);
+    snprintf(text + used, size - used, "#define CONTACT_CONSTANTS %d\n", live_constant_count(live));
+    if (live->law[SLOT_COMPOSITION]) {
+        used = strlen(text);
+        snprintf(text + used, size - used, "#define PARTIES %d\n", scene->material_count + scene->wall_count);
+    }
 }
 
 int live_class_count(const live_laws *live, const scene *scene)

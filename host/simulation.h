@@ -60,7 +60,7 @@ typedef struct simulation {
     char *kernels_directory;
     live_laws live, all; /* of the stage, and the union over stages */
     int stage;
-    cl_program program;
+    cl_program program, table_program;
     kernel_slot kernel[SIMULATION_KERNELS_MAX];
     int kernel_count;
     stored_field field[SIMULATION_FIELDS_MAX];
