@@ -462,7 +462,7 @@ static status look_at_skin(simulation *sim, bool *rebuild, failure *why)
     t->skin_look *= 2;
     TRY(table_travel(sim, &travel, why));
     double best = best_skin(sim, travel / (double)lasted);
-    if (best < 0.8 * t->skin) {
+    if (best < 0.6 * t->skin) {
         t->skin = best;
         *rebuild = true;
     }
