@@ -1,9 +1,9 @@
 /* periodic: nearest image, and positions kept inside the box. The length of a direction that is not periodic is 0, which
  * changes nothing. */
+/* Without comparisons: pocl packs those of x and y into one, and then no longer vectorises over pairs. */
 INLINE real periodic_nearest1(real d, real length)
 {
-    d = d > R(0.5) * length ? d - length : d;
-    return d < R(-0.5) * length ? d + length : d;
+    return d - length * rint(d * (R(1.0) / (length + R(1e-30))));
 }
 
 INLINE vec3 periodic_nearest(const clast_launch *launch, vec3 d)
