@@ -1,0 +1,90 @@
+"""The pair stage is vector code on an x86 CPU under pocl: its square roots and divisions take several pairs at a time. (A law that ends
+vectorisation, by a call or a branch that cannot be flattened, costs several times the whole effect.)"""
+import glob
+import os
+import platform
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+CLAST = os.environ["CLAST"]
+
+SCENE = """
+gravity_m_s2: [0, 0, -9.81]
+effects: [EFFECTS]
+materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3}]
+interactions: [{between: default, restitution: 0.5, friction_static: 0.4, friction_dynamic: DYNAMIC, rolling_friction: 0.02,
+                 normal_stiffness_n_m: 1000, tangential_stiffness_n_m: 500}]
+particles:
+  - {name: bed, material: glass, generator: lattice, lattice: simple_cubic, counts: [5, 5, 5], spacing_m: 2.0e-3, radius_m: 1.0e-3}
+WALLS
+stages: [{name: go, until: {steps: 2}, step_s: 1.0e-5}]
+"""
+HERTZ = "{slot: normal, law: hertz}"
+MINDLIN = HERTZ + ", {slot: tangential, law: mindlin}"
+LINEAR = "{slot: normal, law: linear}, {slot: tangential, law: coulomb_linear}"
+ROLLING = ", {slot: rolling, law: elastic_plastic}"
+PLANE = "walls: [{name: floor, shape: plane, point_m: [0, 0, -0.001], normal: [0, 0, 1]}]"
+BOX = "walls: [{name: box, shape: box, low_m: [-0.001, -0.001, -0.001], high_m: [0.01, 0.01, 0.1]}]"
+PERIODIC = "domain: {low_m: [0, 0, -1], high_m: [0.01, 0.01, 1], periodic: [x, y]}"
+
+
+class Vectorised(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        if platform.machine() != "x86_64":
+            raise unittest.SkipTest(f"{platform.machine()} is no x86 CPU")
+        with open("/proc/cpuinfo") as file:
+            if " avx2 " not in file.read():
+                raise unittest.SkipTest("this CPU has no AVX2")
+        if not shutil.which("objdump"):
+            raise unittest.SkipTest("there is no objdump")
+        devices = subprocess.run([CLAST, "devices"], capture_output=True, text=True, timeout=100)
+        if "pthread" not in devices.stdout and "cpu" not in devices.stdout:
+            raise unittest.SkipTest(f"there is no pocl device: {devices.stdout}{devices.stderr}")
+
+    def machine_code(self, text):
+        """Instructions of the pair stage that pocl made for the scene, in a cache of its own."""
+        with tempfile.TemporaryDirectory() as folder:
+            scene = os.path.join(folder, "scene.yaml")
+            with open(scene, "w") as file:
+                file.write(text)
+            cache = os.path.join(folder, "pocl")
+            os.mkdir(cache)
+            done = subprocess.run([CLAST, "run", scene, "--out", os.path.join(folder, "r.h5"), "--device", "cpu", "--quiet"], capture_output=True,
+                                  text=True, timeout=300, env={**os.environ, "POCL_CACHE_DIR": cache, "POCL_KERNEL_CACHE": "1",
+                                                               "XDG_CACHE_HOME": folder})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            objects = glob.glob(os.path.join(cache, "**", "pair_stage", "**", "*.so"), recursive=True)
+            if not objects:
+                self.skipTest("this pocl leaves no pair_stage in its cache")
+            return "".join(subprocess.run(["objdump", "-d", "--no-show-raw-insn", o], capture_output=True, text=True, check=True).stdout
+                           for o in objects)
+
+    def check(self, effects, walls, dynamic="0.4"):
+        code = self.machine_code(SCENE.replace("EFFECTS", effects).replace("WALLS", walls).replace("DYNAMIC", dynamic))
+        roots = len(re.findall(r"vsqrtpd .*%[yz]mm", code))
+        divisions = len(re.findall(r"vdivpd .*%[yz]mm", code))
+        self.assertGreater(roots, 1, f"{effects}: {len(re.findall('vsqrtsd', code))} scalar roots, no vector ones")
+        self.assertGreater(divisions, 1, f"{effects}: {len(re.findall('vdivsd', code))} scalar divisions, no vector ones")
+
+    def test_normal(self):
+        self.check(HERTZ, "")
+
+    def test_friction_and_box(self):
+        self.check(MINDLIN, BOX)
+
+    def test_rolling_and_plane(self):
+        self.check(MINDLIN + ROLLING, PLANE)
+
+    def test_rolling_and_box_with_two_frictions(self):
+        self.check(MINDLIN + ROLLING, BOX, "0.3")
+
+    def test_linear_periodic(self):
+        self.check(LINEAR, PERIODIC)
+
+
+if __name__ == "__main__":
+    unittest.main()
