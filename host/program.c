@@ -1,10 +1,11 @@
 #include "program.h"
 
+#include "cache.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 static const char build_options[] = "-cl-std=CL1.2 -cl-kernel-arg-info -cl-no-signed-zeros";
@@ -82,22 +83,6 @@ static uint64_t hash_text(uint64_t hash, const char *text)
     return (hash ^ 0xffu) * 1099511628211u;
 }
 
-/* Folder of the cache, made if need be; false where there is none to be had. */
-static bool cache_folder(char *path, size_t size)
-{
-    const char *base = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-    if (base && *base)
-        snprintf(path, size, "%s", base);
-    else if (home && *home)
-        snprintf(path, size, "%s/.cache", home);
-    else
-        return false;
-    mkdir(path, 0777);
-    size_t used = strlen(path);
-    snprintf(path + used, size - used, "/clast");
-    return mkdir(path, 0777) == 0 || errno == EEXIST;
-}
-
 static bool load_binary(const device *device, const char *path, cl_program *out)
 {
     FILE *file = fopen(path, "rb");
@@ -152,7 +137,7 @@ static status report_build(const device *device, cl_program program, const char 
 {
     size_t size = 0;
     char path[4096] = "clast-program.cl";
-    if (cache_folder(path, sizeof path)) {
+    if (cache_directory(path, sizeof path)) {
         size_t used = strlen(path);
         snprintf(path + used, sizeof path - used, "/failed-%016llx.cl", (unsigned long long)key);
     }
@@ -177,7 +162,7 @@ status program_build(const device *device, const char *text, cl_program *out, fa
     key = hash_text(hash_text(key, build_options), device->info.name);
     key = hash_text(hash_text(key, device->info.driver), device->info.version);
     char path[4096];
-    bool cached = cache_folder(path, sizeof path);
+    bool cached = cache_directory(path, sizeof path);
     if (cached) {
         size_t used = strlen(path);
         snprintf(path + used, sizeof path - used, "/%016llx.bin", (unsigned long long)key);
