@@ -37,7 +37,6 @@ static status read_constants(output *o, failure *why)
 {
     simulation *sim = o->sim;
     size_t n = (size_t)sim->id_count + 1;
-    double *material = NULL;
     o->id = malloc(n * sizeof *o->id);
     o->material = calloc(n, sizeof *o->material);
     o->group = malloc(n * sizeof *o->group);
@@ -50,7 +49,6 @@ static status read_constants(output *o, failure *why)
         o->group[i] = sim->group_of_id[i];
         o->material[i] = sim->scene->group[sim->group_of_id[i]].material;
     }
-    free(material);
     return STATUS_OK;
 }
 

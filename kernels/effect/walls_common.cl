@@ -12,7 +12,7 @@ typedef struct wall_touch {
 } wall_touch;
 
 /* n, spin_j and turn of the contact; a face turns with its wall, an edge or a corner with the grain's passage. */
-INLINE void walls_fill(const __global clast_face *face, vec3 x, vec3 n, vec3 point, real distance, bool on_face, vec3 velocity_i, contact *c,
+INLINE void walls_fill(const __global clast_face *face, vec3 n, vec3 point, real distance, bool on_face, vec3 velocity_i, contact *c,
                        wall_touch *touch)
 {
     vec3 spin = v3((real)face->spin[0], (real)face->spin[1], (real)face->spin[2]);
@@ -28,5 +28,4 @@ INLINE void walls_fill(const __global clast_face *face, vec3 x, vec3 n, vec3 poi
     c->n = n;
     c->spin_j = spin;
     c->turn = v3(on_face ? across.x : passing.x, on_face ? across.y : passing.y, on_face ? across.z : passing.z);
-    (void)x;
 }

@@ -74,6 +74,6 @@ INLINE void walls_contact(const __global clast_face *row, int face_count, int in
 {
     wall_nearest mine = walls_find(row + index, x);
     bool taken = !mine.on_face && mine.distance < c->radius_i && walls_taken(row, face_count, index, x, &mine);
-    walls_fill(row + index, x, scale(R(-1.0), mine.outward), mine.point, mine.distance, mine.on_face, velocity_i, c, touch);
+    walls_fill(row + index, scale(R(-1.0), mine.outward), mine.point, mine.distance, mine.on_face, velocity_i, c, touch);
     touch->distance = taken ? R(1e30) : touch->distance;
 }
