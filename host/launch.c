@@ -25,7 +25,8 @@ static const stage_list stage_lists[] = {
 };
 
 /* The order in which PAIR_FIELDS and PARTICLE_FIELDS name the slots. */
-static const slot_id pair_slots[] = {SLOT_COMPOSITION, SLOT_MOTION, SLOT_ROTATION, SLOT_SLIP, SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_WALLS};
+static const slot_id pair_slots[] = {SLOT_COMPOSITION, SLOT_MOTION, SLOT_ROTATION, SLOT_BONDING, SLOT_BOND, SLOT_COHESION,
+                                     SLOT_SLIP,        SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_WALLS};
 static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENTATION};
 
 int launch_argument_names(const live_laws *live, const char *kernel, const char **names, int max)

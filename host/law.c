@@ -13,7 +13,9 @@ static const struct {
     bool listed;
 } slots[SLOT_COUNT] = {
     [SLOT_COMPOSITION] = {"composition", false}, [SLOT_PERIODIC] = {"periodic", false},     [SLOT_MOTION] = {"motion", false},
-    [SLOT_ROTATION] = {"rotation", false},       [SLOT_NORMAL] = {"normal", true},          [SLOT_SLIP] = {"slip", false},
+    [SLOT_ROTATION] = {"rotation", false},       [SLOT_NORMAL] = {"normal", true},
+    [SLOT_BONDING] = {"bonding", false},         [SLOT_BOND] = {"bond", false},              [SLOT_COHESION] = {"cohesion", false},
+    [SLOT_SLIP] = {"slip", false},
     [SLOT_TANGENTIAL] = {"tangential", true},    [SLOT_ROLLING] = {"rolling", true},        [SLOT_WALLS] = {"walls", false},
     [SLOT_BODY] = {"body", true},                [SLOT_ORIENTATION] = {"orientation", false}, [SLOT_INTEGRATOR] = {"integrator", false},
 };

@@ -11,6 +11,9 @@ typedef enum slot_id {
     SLOT_MOTION,      /* derived: all free, or groups with prescribed motion */
     SLOT_ROTATION,    /* derived: spin, where a law or an output asks for it */
     SLOT_NORMAL,
+    SLOT_BONDING, /* derived: what lets a contact bond */
+    SLOT_BOND,
+    SLOT_COHESION,
     SLOT_SLIP, /* derived: one friction coefficient, or static and dynamic with the sliding flag */
     SLOT_TANGENTIAL,
     SLOT_ROLLING,
@@ -84,11 +87,14 @@ typedef struct law {
     const property *interaction_needs[LAW_PROPERTIES_MAX];
     const field *pair_fields[LAW_ARGUMENTS_MAX];     /* what it adds to the pair stage's arguments, in this order */
     const field *particle_fields[LAW_ARGUMENTS_MAX]; /* what it adds to the particle stage's */
+    bool turns; /* acts on spins, which must then be followed */
     const char *parameters[LAW_PARAMETERS_MAX];      /* constants a contact class carries for it, in SI */
     /* Fills parameters for one contact class. `option` are this law's option values. */
     void (*derive)(const contact_class *class, const double *option, double *parameter);
     /* Compile-time constants from the options: appends "#define NAME value" lines. May be NULL. */
     void (*constants)(const double *option, char *text, size_t size);
+    /* The same from the whole scene: forms of a law that are cheaper where every contact allows them. May be NULL. */
+    void (*scene_constants)(const struct scene *scene, char *text, size_t size);
 } law;
 
 /* Null-terminated list of every law that a scene may name. */

@@ -71,6 +71,11 @@ static bool two_frictions(const scene *scene)
     return false;
 }
 
+static bool law_turns(const law *l)
+{
+    return l && l->turns;
+}
+
 void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
 {
     memset(out, 0, sizeof *out);
@@ -81,7 +86,7 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         out->law[slot] = e->law;
         out->option[slot] = e->option;
     }
-    bool turning = scene_effect(scene, -1, SLOT_TANGENTIAL) || scene_effect(scene, -1, SLOT_ROLLING) || wants_output(scene, "spin") ||
+    bool turning = law_turns(out->law[SLOT_BOND]) || scene_effect(scene, -1, SLOT_TANGENTIAL) || scene_effect(scene, -1, SLOT_ROLLING) || wants_output(scene, "spin") ||
                    wants_output(scene, "orientation") || wants_output(scene, "rotational_energy") || any_spin(bed);
     if (scene->material_count > 1)
         out->law[SLOT_COMPOSITION] = &law_composition_several;
@@ -115,7 +120,8 @@ static const char *none_file(slot_id slot)
 {
     static const char *const files[SLOT_COUNT] = {
         [SLOT_COMPOSITION] = "none/composition.cl", [SLOT_PERIODIC] = "none/periodic.cl",       [SLOT_MOTION] = "none/motion.cl",
-        [SLOT_ROTATION] = "none/rotation.cl",       [SLOT_NORMAL] = "none/normal.cl",           [SLOT_SLIP] = "none/slip.cl",
+        [SLOT_ROTATION] = "none/rotation.cl",       [SLOT_NORMAL] = "none/normal.cl",           [SLOT_BONDING] = "none/bonding.cl",
+        [SLOT_BOND] = "none/bond.cl",               [SLOT_COHESION] = "none/cohesion.cl",       [SLOT_SLIP] = "none/slip.cl",
         [SLOT_TANGENTIAL] = "none/tangential.cl",   [SLOT_ROLLING] = "none/rolling.cl",         [SLOT_WALLS] = "none/walls.cl",
         [SLOT_BODY] = "none/body.cl",               [SLOT_ORIENTATION] = "none/orientation.cl", [SLOT_INTEGRATOR] = NULL,
     };
@@ -174,6 +180,8 @@ void live_constants(const live_laws *live, const scene *scene, char *text, size_
         }
         if (l->constants)
             l->constants(live->option[slot], text, size);
+        if (l->scene_constants)
+            l->scene_constants(scene, text, size);
     }
     used = strlen(text);
     snprintf(text + used, size - used, "#define CONTACT_CONSTANTS %d\n", live_constant_count(live));

@@ -99,6 +99,7 @@ INLINE vec3 from3(const clast_f64 *a)
 typedef struct contact {
     vec3 n;              /* unit normal from i to j */
     real overlap;        /* m; 0 where the two do not touch */
+    real gap;            /* between the surfaces, m; below 0 where the two touch */
     real approach;       /* rate of the overlap, m/s */
     real radius_i, radius_j, mass_i, mass_j;
     real radius_eff;     /* r* = ri rj/(ri + rj); r at a wall */
@@ -117,7 +118,9 @@ typedef struct contact {
 
 /* What the laws make of it. */
 typedef struct response {
-    real normal;     /* N, never negative */
+    real spring, damper; /* the two parts of the normal force */
+    real normal;     /* their sum: pushes, and never pulls but where a bond or cohesion lets it */
+    real bearing;    /* what friction and rolling are limited by: the normal force, or its compressive part where something also pulls */
     vec3 tangential; /* force on i */
     vec3 rolling;    /* moment on i; j gets the opposite */
 } response;

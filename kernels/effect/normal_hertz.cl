@@ -1,5 +1,6 @@
-/* normal: Hertz, TM Eq. 2 and 6; N = [4/3 E* sqrt(r*) d^1.5 + 2 xi sqrt(2 E* m* sqrt(r*)) d^(1/4) d']_+ (clamp: BM sec. 4).
- * Reads NORMAL_MODULUS = E* (Pa), NORMAL_DAMPING = 2 xi sqrt(2 E*) (Pa^1/2). Writes the normal force. */
+/* normal: Hertz, TM Eq. 2 and 6; N = [4/3 E* sqrt(r*) d^1.5 + 2 xi sqrt(2 E* m* sqrt(r*)) d^(1/4) d']_+; the stage
+ * clamps (BM sec. 4).
+ * Reads NORMAL_MODULUS = E* (Pa), NORMAL_DAMPING = 2 xi sqrt(2 E*) (Pa^1/2). Writes spring and damper. */
 #ifndef NORMAL_MODULUS
 #define NORMAL_MODULUS 0
 #define NORMAL_DAMPING 1
@@ -7,10 +8,8 @@
 
 INLINE void normal_force(const contact *c, response *out)
 {
-    real spring = R(1.33333333333333333) * c->value[NORMAL_MODULUS] * c->contact_radius * c->overlap;
-    real damper = c->value[NORMAL_DAMPING] * c->inertia_root * c->approach;
-    real force = spring + damper;
-    out->normal = force > R(0.0) ? force : R(0.0);
+    out->spring = R(1.33333333333333333) * c->value[NORMAL_MODULUS] * c->contact_radius * c->overlap;
+    out->damper = c->value[NORMAL_DAMPING] * c->inertia_root * c->approach;
 }
 
 INLINE real normal_energy(const contact *c)

@@ -1,5 +1,5 @@
 /* normal: linear spring and dashpot, N = [k d + 2 xi sqrt(m* k) d']_+ while the two touch.
- * Reads NORMAL_STIFFNESS = k (N/m), NORMAL_DAMPING = 2 xi sqrt(k). Writes the normal force. */
+ * Reads NORMAL_STIFFNESS = k (N/m), NORMAL_DAMPING = 2 xi sqrt(k). Writes spring and damper; the stage clamps. */
 #ifndef NORMAL_STIFFNESS
 #define NORMAL_STIFFNESS 0
 #define NORMAL_DAMPING 1
@@ -8,8 +8,8 @@
 INLINE void normal_force(const contact *c, response *out)
 {
     real damping = c->overlap > R(0.0) ? c->value[NORMAL_DAMPING] * sqrt(c->mass_eff) : R(0.0);
-    real force = c->value[NORMAL_STIFFNESS] * c->overlap + damping * c->approach;
-    out->normal = force > R(0.0) ? force : R(0.0);
+    out->spring = c->value[NORMAL_STIFFNESS] * c->overlap;
+    out->damper = damping * c->approach;
 }
 
 INLINE real normal_energy(const contact *c)

@@ -19,7 +19,7 @@ INLINE void rolling_moment(const contact *c, rolling_state *s, response *out)
     (void)s;
     vec3 rate = sub(c->spin_i, c->spin_j);
     rate = add_scaled(rate, (ROLLING_TWIST - R(1.0)) * dot3(rate, c->n), c->n);
-    real size = sqrt(dot3(rate, rate)), limit = c->value[ROLLING_FRICTION] * c->radius_eff * out->normal;
+    real size = sqrt(dot3(rate, rate)), limit = c->value[ROLLING_FRICTION] * c->radius_eff * out->bearing;
     real ii = R(0.4) * c->mass_i * c->radius_i * c->radius_i, jj = R(0.4) * c->mass_j * c->radius_j * c->radius_j;
     real stop = c->dt > R(0.0) ? ii * jj / (ii + jj) * size / c->dt : R(0.0);
     limit = limit < stop ? limit : stop;

@@ -52,7 +52,7 @@ INLINE void rolling_moment(const contact *c, rolling_state *s, response *out)
     vec3 rate = rolling_rate(c);
     vec3 spring = add_scaled(rolling_turn(c, s->spring), c->dt, rate);
     vec3 trial = add_scaled(scale(-m.stiffness, spring), -m.damping, rate);
-    real size = sqrt(dot3(trial, trial)), limit = c->value[ROLLING_FRICTION] * c->radius_eff * out->normal;
+    real size = sqrt(dot3(trial, trial)), limit = c->value[ROLLING_FRICTION] * c->radius_eff * out->bearing;
     real compliance = c->value[ROLLING_COMPLIANCE] * c->contact_inverse * c->radius_inverse * c->radius_inverse;
     bool yields = size > limit, live = compliance > R(0.0);
     real factor = yields ? limit / size : R(1.0);

@@ -44,7 +44,7 @@ INLINE void tangential_force(const contact *c, slip_state *slip, tangential_stat
         spring = scale(spring_unloading(c), spring);
     spring = add_scaled(spring, c->dt, c->slip);
     vec3 trial = add_scaled(scale(-stiffness, spring), -damping, c->slip);
-    real factor = slip_factor(c, out->normal, sqrt(dot3(trial, trial)), slip);
+    real factor = slip_factor(c, out->bearing, sqrt(dot3(trial, trial)), slip);
     out->tangential = scale(factor, trial);
     s->spring = spring_return(c, TANGENTIAL_COMPLIANCE_OF(c), damping, factor, spring, out->tangential);
 }

@@ -4,7 +4,7 @@
 INLINE void normal_force(const contact *c, response *out)
 {
     (void)c;
-    out->normal = R(0.0);
+    out->spring = out->damper = R(0.0);
 }
 
 INLINE real normal_energy(const contact *c)

@@ -4,6 +4,7 @@
     READ(int, owner) READ(int, other) READ(real, position) READ(real, velocity) READ(real, radius) READ(real, mass)            \
     READ(real, contact_constants) \
     WRITE(real, force) COMPOSITION_PAIR_FIELDS(READ, WRITE) MOTION_PAIR_FIELDS(READ, WRITE) ROTATION_PAIR_FIELDS(READ, WRITE)    \
+    BONDING_PAIR_FIELDS(READ, WRITE) BOND_PAIR_FIELDS(READ, WRITE) COHESION_PAIR_FIELDS(READ, WRITE)                           \
     SLIP_PAIR_FIELDS(READ, WRITE) TANGENTIAL_PAIR_FIELDS(READ, WRITE) ROLLING_PAIR_FIELDS(READ, WRITE) WALLS_PAIR_FIELDS(READ, WRITE)
 #define PAIR_DECLARE PAIR_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PAIR_PASS PAIR_FIELDS(PASS, PASS)
@@ -39,6 +40,7 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     bool apart = d2 > R(0.0);
     real inverse = R(1.0) / sqrt(apart ? d2 : R(1.0)), distance = d2 * inverse;
     real overlap = sum - distance;
+    c->gap = apart ? -overlap : R(1e30);
     overlap = apart && overlap > R(0.0) ? overlap : R(0.0);
     c->overlap = motion_overlap(MOTION_GRAIN(i), MOTION_GRAIN(j), overlap);
     c->n = scale(inverse, d);
@@ -66,6 +68,7 @@ INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_
     WALLS_CONTACT(launch, other[k], x, v, c, touch);
     c->class = composition_class(COMPOSITION_GRAIN(i), touch->party);
     real overlap = c->radius_i - touch->distance;
+    c->gap = -overlap;
     c->overlap = motion_overlap(MOTION_GRAIN(i), 0, overlap > R(0.0) ? overlap : R(0.0));
     c->radius_eff = c->radius_i;
     c->mass_eff = c->mass_i;
@@ -78,15 +81,30 @@ INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_
 }
 
 typedef struct contact_state {
+    bond_state bond;
+    cohesion_state cohesion;
     slip_state slip;
     tangential_state tangential;
     rolling_state rolling;
 } contact_state;
 
+/* Spring and damper together never pull; a bond or cohesion, which come after this, may. */
+INLINE void normal_total(const contact *c, response *out)
+{
+    normal_force(c, out);
+    real force = out->spring + out->damper;
+    out->normal = force > R(0.0) ? force : R(0.0);
+    out->bearing = out->normal;
+}
+
 /* The slots in their order. */
 INLINE void contact_laws(contact *c, contact_state *s, response *out)
 {
-    normal_force(c, out);
+    bond_geometry(c, &s->bond);
+    normal_total(c, out);
+    bond_normal(c, &s->bond, out);
+    cohesion_force(c, &s->cohesion, out);
     tangential_force(c, &s->slip, &s->tangential, out);
     rolling_moment(c, &s->rolling, out);
+    bond_shear(c, &s->bond, out);
 }

@@ -56,7 +56,8 @@ INLINE void observe_record(const clast_launch *launch, int k, bool wall PAIR_DEC
     real touching = c.overlap > R(0.0) ? R(1.0) : R(0.0);
     AT(force, launch->record_stride, 0, k) = c.overlap / smaller;
     AT(force, launch->record_stride, 1, k) =
-        touching * (normal_energy(&c) + tangential_energy(&c, &s.tangential) + rolling_energy(&c, &s.rolling));
+        touching * (normal_energy(&c) + tangential_energy(&c, &s.tangential) + rolling_energy(&c, &s.rolling)) +
+        bond_energy(&c, &s.bond) + cohesion_energy(&c, &s.cohesion);
     AT(force, launch->record_stride, 2, k) = c.overlap;
 }
 
@@ -81,6 +82,12 @@ __kernel void limit_records(const clast_launch launch PAIR_DECLARE)
     c.value = contact_constants + c.class * CONTACT_CONSTANTS;
     real twice = wall ? R(1.0) : R(2.0);
     mode n = normal_mode(&c), t = tangential_mode(&c), r = rolling_mode(&c);
+    bond_state bond;
+    cohesion_state cohesion;
+    BOND_LOAD(&launch, k, bond);
+    COHESION_LOAD(&launch, k, cohesion);
+    bond_modes(&c, &bond, &n, &t, &r);
+    cohesion_mode(&c, &cohesion, &n);
     LIMIT_STORE(&launch, k, twice, c.n, n, t, r);
 }
 
@@ -181,6 +188,7 @@ __kernel void limit_particles(const clast_launch launch, __global const uint *re
 INLINE void expected_at(contact *c, real overlap)
 {
     c->overlap = overlap;
+    c->gap = -overlap;
     contact_complete(c);
 }
 
@@ -201,6 +209,9 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
     c.dt = R(0.0);
     real energy = R(0.5) * c.mass_eff * (real)speed * (real)speed, impact_low = R(0.0), impact_high = c.radius_eff;
     real rest_low = R(0.0), rest_high = c.radius_eff;
+    real pulled_low = R(0.0), pulled_high = c.radius_eff; /* an impact with what pulls: deeper */
+    bond_state bond = bond_expected(&c);
+    cohesion_state cohesion = cohesion_expected(&c);
     for (int n = 0; n < EXPECTED_BISECTIONS; n++) {
         real middle = R(0.5) * (impact_low + impact_high);
         response out;
@@ -208,9 +219,14 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
         bool deep = normal_energy(&c) > energy;
         impact_high = deep ? middle : impact_high;
         impact_low = deep ? impact_low : middle;
+        middle = R(0.5) * (pulled_low + pulled_high);
+        expected_at(&c, middle);
+        deep = normal_energy(&c) + bond_energy(&c, &bond) + cohesion_energy(&c, &cohesion) > energy;
+        pulled_high = deep ? middle : pulled_high;
+        pulled_low = deep ? pulled_low : middle;
         middle = R(0.5) * (rest_low + rest_high);
         expected_at(&c, middle);
-        normal_force(&c, &out);
+        normal_total(&c, &out);
         deep = out.normal > (real)weight;
         rest_high = deep ? middle : rest_high;
         rest_low = deep ? rest_low : middle;
@@ -224,9 +240,11 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
         duration += left > R(0.0) ? cos(phi) / sqrt(left) : R(0.0);
     }
     duration *= R(2.0) * impact_high * R(1.5707963267948966) / (real)EXPECTED_POINTS;
-    expected_at(&c, impact_high > rest_high ? impact_high : rest_high);
+    expected_at(&c, pulled_high > rest_high ? pulled_high : rest_high);
     real inverse = R(1.0) / c.mass_eff;
     mode a = normal_mode(&c), t = tangential_mode(&c), r = rolling_mode(&c);
+    bond_modes(&c, &bond, &a, &t, &r);
+    cohesion_mode(&c, &cohesion, &a);
     real spin_i = R(1.0) / (R(0.4) * c.mass_i * c.radius_i * c.radius_i);
     real spin_both = wall ? spin_i : spin_i + R(1.0) / (R(0.4) * c.mass_j * c.radius_j * c.radius_j);
     result[0] = c.overlap;

@@ -1,9 +1,13 @@
 /* The pair stage: force and torque of every record, and its history one step on. */
 #define PAIR_LOAD_STATE(launch, k, s)             \
+    BOND_LOAD(launch, k, (s).bond);               \
+    COHESION_LOAD(launch, k, (s).cohesion);       \
     SLIP_LOAD(launch, k, (s).slip);               \
     TANGENTIAL_LOAD(launch, k, (s).tangential);   \
     ROLLING_LOAD(launch, k, (s).rolling)
 #define PAIR_STORE_STATE(launch, k, s)            \
+    BOND_STORE(launch, k, (s).bond);              \
+    COHESION_STORE(launch, k, (s).cohesion);      \
     SLIP_STORE(launch, k, (s).slip);              \
     TANGENTIAL_STORE(launch, k, (s).tangential);  \
     ROLLING_STORE(launch, k, (s).rolling)
