@@ -22,12 +22,13 @@ static const stage_list stage_lists[] = {
     {"observe_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"limit_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"particle_stage", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"particle_synchronise", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
 };
 
 /* The order in which PAIR_FIELDS and PARTICLE_FIELDS name the slots. */
 static const slot_id pair_slots[] = {SLOT_COMPOSITION, SLOT_MOTION, SLOT_ROTATION, SLOT_BONDING, SLOT_BOND, SLOT_COHESION,
-                                     SLOT_SLIP,        SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_WALLS};
-static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENTATION};
+                                     SLOT_SLIP,        SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_WALLS, SLOT_INTEGRATOR};
+static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENTATION, SLOT_INTEGRATOR};
 
 int launch_argument_names(const live_laws *live, const char *kernel, const char **names, int max)
 {
@@ -96,7 +97,7 @@ status launch_bind_stages(simulation *sim, failure *why)
     const char *const others[] = {"pair_probe", "observe_records", "limit_records"};
     for (size_t k = 0; k < sizeof others / sizeof *others; k++)
         TRY(launch_bind(sim, others[k], 1, why));
-    return STATUS_OK;
+    return live_keeps_half_steps(&sim->live) ? launch_bind(sim, "particle_synchronise", 3, why) : STATUS_OK;
 }
 
 static status open_program(simulation *sim, const char *constants, const char *const *files, int count, cl_program *out, failure *why)
@@ -114,6 +115,13 @@ static bool is_of_table(const char *name)
     return strncmp(name, "table_", 6) == 0 || strncmp(name, "scan_", 5) == 0;
 }
 
+static bool has_kernel(const simulation *sim, const char *name)
+{
+    if (strcmp(name, "particle_synchronise") == 0)
+        return live_keeps_half_steps(&sim->live);
+    return !strstr(name, "_walls") || sim->live.law[SLOT_WALLS];
+}
+
 status launch_open(simulation *sim, failure *why)
 {
     const char *files[64], *table_files[LIVE_TABLE_FILES];
@@ -126,11 +134,11 @@ status launch_open(simulation *sim, failure *why)
                                         "table_permute_int", "table_count",    "table_fill",        "table_pad",         "table_widths",
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
-                                        "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls"};
+                                        "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
+                                        "particle_synchronise"};
     sim->kernel_count = 0;
     for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
-        bool walls = strstr(names[n], "_walls") != NULL;
-        if (walls && !sim->live.law[SLOT_WALLS])
+        if (!has_kernel(sim, names[n]))
             continue;
         cl_int code;
         cl_kernel kernel = clCreateKernel(is_of_table(names[n]) ? sim->table_program : sim->program, names[n], &code);
@@ -167,6 +175,8 @@ clast_launch launch_values(const simulation *sim)
     double travel = 0.5 * sim->table.skin;
     clast_launch v = {
         .dt = sim->dt,
+        .lag = sim->lag,
+        .kick = sim->dt,
         .travel2 = travel * travel,
         .record_stride = sim->table.record_stride,
         .particle_count = (clast_i32)sim->count,

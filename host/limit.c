@@ -102,7 +102,7 @@ static void note(step_limit *out, double limit, const char *what)
 static status approach_speed(simulation *sim, double *grains, double *walls, failure *why)
 {
     particle_sums sums;
-    TRY(observe_particle_sums(sim, &sums, why));
+    TRY(observe_stored_sums(sim, &sums, why));
     double g = sqrt(pow(sim->gravity[0], 2) + pow(sim->gravity[1], 2) + pow(sim->gravity[2], 2));
     double fastest = sums.speed_max, drift = 0.0;
     if (sim->scene->wall_count == 0 && sim->mover_count == 0 && sums.mass > 0.0) {

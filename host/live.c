@@ -102,7 +102,8 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         out->law[SLOT_WALLS] = any_finite_wall(scene) ? &law_walls_finite : &law_walls_planes;
     if (wants_output(scene, "orientation"))
         out->law[SLOT_ORIENTATION] = &law_orientation_quaternion;
-    out->law[SLOT_INTEGRATOR] = &law_semi_implicit_euler;
+    const law *verlet = turning ? &law_velocity_verlet_spin : &law_velocity_verlet;
+    out->law[SLOT_INTEGRATOR] = scene->integrator == INTEGRATOR_VELOCITY_VERLET ? verlet : &law_semi_implicit_euler;
 }
 
 void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, live_laws *out)
@@ -128,6 +129,11 @@ static const char *none_file(slot_id slot)
     return files[slot];
 }
 
+bool live_keeps_half_steps(const live_laws *live)
+{
+    return live_uses(live, &field_half_velocity);
+}
+
 int live_files(const live_laws *live, const char **files, int max)
 {
     static const char *const stages[] = {"stage/contact.cl", "stage/pair.cl", "stage/particle.cl", "stage/observe.cl"};
@@ -141,6 +147,8 @@ int live_files(const live_laws *live, const char **files, int max)
     }
     for (size_t s = 0; s < sizeof stages / sizeof *stages && count < max; s++)
         files[count++] = stages[s];
+    if (live_keeps_half_steps(live) && count < max)
+        files[count++] = "stage/synchronise.cl";
     return count;
 }
 

@@ -39,19 +39,37 @@ static status read_partial(simulation *sim, int64_t doubles, double **out, failu
     return store_read(sim, sim->partial, 0, 8 * (uint64_t)doubles, *out, why);
 }
 
-status observe_particle_sums(simulation *sim, particle_sums *out, failure *why)
+status observe_velocities(simulation *sim, cl_mem *velocity, cl_mem *spin, failure *why)
+{
+    stored_field *turning = sim->live.law[SLOT_ROTATION] ? store_find(sim, "spin") : NULL;
+    *velocity = store_find(sim, "velocity")->mem;
+    *spin = turning ? turning->mem : NULL;
+    if (!live_keeps_half_steps(&sim->live))
+        return STATUS_OK;
+    clast_launch launch = launch_values(sim);
+    cl_kernel probe = launch_kernel(sim, "pair_probe"), now = launch_kernel(sim, "particle_synchronise");
+    launch.kick = 0.5 * sim->lag;
+    TRY(simulation_pose_now(sim, why));
+    TRY(launch_set(probe, "pair_probe", why, "L", &launch));
+    TRY(launch_run(sim, probe, "pair_probe", sim->table.record_count, CLAST_BLOCK, why));
+    TRY(launch_set(now, "particle_synchronise", why, "Lmm", &launch, sim->velocity_now, sim->spin_now));
+    TRY(launch_run(sim, now, "particle_synchronise", sim->count, CLAST_BLOCK, why));
+    *velocity = sim->velocity_now;
+    *spin = turning ? sim->spin_now : NULL;
+    return STATUS_OK;
+}
+
+static status sum_particles(simulation *sim, cl_mem velocity, cl_mem spin, particle_sums *out, failure *why)
 {
     int64_t chunks = (sim->id_count + CHUNK - 1) / CHUNK;
     clast_launch launch = launch_values(sim);
     cl_kernel kernel = launch_kernel(sim, "observe_particles");
-    stored_field *spin = sim->live.law[SLOT_ROTATION] ? store_find(sim, "spin") : NULL;
     double *partial = NULL, sum[PARTICLE_SUMS] = {0};
     memset(out, 0, sizeof *out);
     TRY(observe_where(sim, why));
     TRY(observe_partial(sim, chunks * PARTICLE_SUMS, why));
     TRY(launch_set(kernel, "observe_particles", why, spin ? "Lmmmmmmim" : "Lmmmmmmi", &launch, sim->where, store_find(sim, "position")->mem,
-                   store_find(sim, "velocity")->mem, store_find(sim, "radius")->mem, store_find(sim, "mass")->mem, sim->partial, (cl_int)sim->id_count,
-                   spin ? spin->mem : NULL));
+                   velocity, store_find(sim, "radius")->mem, store_find(sim, "mass")->mem, sim->partial, (cl_int)sim->id_count, spin));
     TRY(launch_run(sim, kernel, "observe_particles", chunks, 1, why));
     status result = read_partial(sim, chunks * PARTICLE_SUMS, &partial, why);
     for (int64_t c = 0; c < chunks && result == STATUS_OK; c++)
@@ -61,6 +79,19 @@ status observe_particle_sums(simulation *sim, particle_sums *out, failure *why)
     TRY(result);
     *out = (particle_sums){sum[0], sum[1], sum[2], sum[3], {sum[4], sum[5], sum[6]}, {sum[7], sum[8], sum[9]}, sqrt(sum[10]), sum[11]};
     return STATUS_OK;
+}
+
+status observe_particle_sums(simulation *sim, particle_sums *out, failure *why)
+{
+    cl_mem velocity, spin;
+    TRY(observe_velocities(sim, &velocity, &spin, why));
+    return sum_particles(sim, velocity, spin, out, why);
+}
+
+status observe_stored_sums(simulation *sim, particle_sums *out, failure *why)
+{
+    stored_field *spin = sim->live.law[SLOT_ROTATION] ? store_find(sim, "spin") : NULL;
+    return sum_particles(sim, store_find(sim, "velocity")->mem, spin ? spin->mem : NULL, out, why);
 }
 
 /* End of the records that stand for contacts; those that fill up the last work-group behind it repeat grain 0 and face 0. */
@@ -306,6 +337,11 @@ status observe_field(simulation *sim, const char *name, double **out, failure *w
     if (!stored)
         return fail(why, STATUS_ERROR, "internal: no field named %s", name);
     int components = stored->field->components;
+    cl_mem from = stored->mem, velocity, spin;
+    if (strcmp(name, "velocity") == 0 || strcmp(name, "spin") == 0) {
+        TRY(observe_velocities(sim, &velocity, &spin, why));
+        from = name[0] == 'v' ? velocity : spin ? spin : stored->mem;
+    }
     int32_t *id = NULL;
     double *rows = NULL;
     *out = malloc(sizeof **out * (size_t)(sim->id_count * components + 1));
@@ -313,7 +349,7 @@ status observe_field(simulation *sim, const char *name, double **out, failure *w
     for (int64_t n = 0; result == STATUS_OK && n < sim->id_count * components; n++)
         (*out)[n] = NAN;
     if (result == STATUS_OK)
-        result = read_doubles(sim, stored->mem, 0, components * sim->stride, &rows, why);
+        result = read_doubles(sim, from, 0, components * sim->stride, &rows, why);
     for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++)
         memcpy(*out + (int64_t)id[i] * components, rows + i * components, sizeof *rows * (size_t)components);
     free(rows);

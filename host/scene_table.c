@@ -334,7 +334,7 @@ static const parameter scene_rows[] = {
     {.key = "gravity_m_s2", .type = PARAMETER_VECTOR, .unit = "m/s^2", .fallback = "[0, 0, 0]", AT(scene, gravity_m_s2), .doc = "gravity"},
     {.key = "precision", .type = PARAMETER_CHOICE, .choices = "auto|double", .later = "mixed", .fallback = "auto", AT(scene, precision),
      .doc = "arithmetic; `auto` is `double`"},
-    {.key = "integrator", .type = PARAMETER_CHOICE, .choices = "semi_implicit_euler", .later = "velocity_verlet",
+    {.key = "integrator", .type = PARAMETER_CHOICE, .choices = "semi_implicit_euler|velocity_verlet",
      .fallback = "semi_implicit_euler", AT(scene, integrator), .doc = "how time advances"},
     {.key = "domain", .type = PARAMETER_SECTION, .section = &domain_section, AT(scene, domain), .given = offsetof(scene, domain.given),
      .shown = "unbounded", .doc = "the box that holds the particles"},

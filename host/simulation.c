@@ -124,6 +124,10 @@ static status create_buffers(simulation *sim, failure *why)
     TRY(store_fill(sim, sim->built_position, field_bytes(sim, &field_position), why));
     if (store_find(sim, "orientation"))
         TRY(store_buffer(sim, &sim->scratch4, field_bytes(sim, &field_orientation), "sorting", why));
+    if (live_keeps_half_steps(&sim->all)) {
+        TRY(store_buffer(sim, &sim->velocity_now, field_bytes(sim, &field_velocity), "synchronised velocities", why));
+        TRY(store_buffer(sim, &sim->spin_now, store_find(sim, "spin") ? field_bytes(sim, &field_spin) : 0, "synchronised spins", why));
+    }
     TRY(store_buffer(sim, &sim->where, 4 * (uint64_t)sim->stride, "indices of ids", why));
     TRY(store_buffer(sim, &sim->control, sizeof(clast_control), "control words", why));
     int width = live_constant_count(&sim->all);
@@ -170,7 +174,8 @@ void simulation_free(simulation *sim)
     table_free(sim);
     for (int f = 0; f < sim->field_count; f++)
         store_release(sim, &sim->field[f].mem, 0);
-    cl_mem *const rest[] = {&sim->where, &sim->partial, &sim->control, &sim->faces, &sim->movers, &sim->constants, &sim->built_position, &sim->scratch4};
+    cl_mem *const rest[] = {&sim->where, &sim->partial, &sim->control, &sim->faces, &sim->movers, &sim->constants, &sim->built_position, &sim->scratch4,
+                            &sim->velocity_now, &sim->spin_now};
     for (size_t m = 0; m < sizeof rest / sizeof *rest; m++)
         store_release(sim, rest[m], 0);
     free(sim->wall_body);
@@ -274,7 +279,7 @@ status simulation_choose_drift(simulation *sim, failure *why)
     if (sim->scene->wall_count > 0 || sim->mover_count > 0 || sim->count == 0)
         return STATUS_OK;
     particle_sums sums;
-    TRY(observe_particle_sums(sim, &sums, why));
+    TRY(observe_stored_sums(sim, &sums, why));
     for (int c = 0; c < 3; c++)
         sim->drift_velocity[c] = sums.mass > 0.0 ? sums.momentum[c] / sums.mass : 0.0;
     return STATUS_OK;
@@ -388,11 +393,35 @@ status simulation_enter_stage(simulation *sim, int stage, failure *why)
     return table_build(sim, false, why);
 }
 
+/* Half-step velocities start anew where laws, gravity or motions change: from the velocities of this moment, under the laws that led to it. */
+static status end_half_steps(simulation *sim, failure *why)
+{
+    if (sim->stage < 0 || !live_keeps_half_steps(&sim->live))
+        return STATUS_OK;
+    cl_mem velocity, spin;
+    TRY(observe_velocities(sim, &velocity, &spin, why));
+    TRY(store_copy(sim, velocity, store_find(sim, "velocity")->mem, 0, 0, field_bytes(sim, &field_velocity), why));
+    return spin ? store_copy(sim, spin, store_find(sim, "spin")->mem, 0, 0, field_bytes(sim, &field_spin), why) : STATUS_OK;
+}
+
+static status begin_half_steps(simulation *sim, failure *why)
+{
+    sim->lag = 0.0;
+    if (!live_keeps_half_steps(&sim->all))
+        return STATUS_OK;
+    stored_field *half_spin = store_find(sim, "half_spin");
+    uint64_t bytes = field_bytes(sim, &field_velocity);
+    TRY(store_copy(sim, store_find(sim, "velocity")->mem, store_find(sim, "half_velocity")->mem, 0, 0, bytes, why));
+    return half_spin ? store_copy(sim, store_find(sim, "spin")->mem, half_spin->mem, 0, 0, bytes, why) : STATUS_OK;
+}
+
 status simulation_begin_stage(simulation *sim, int stage, failure *why)
 {
     sim->stage_steps = 0;
+    TRY(end_half_steps(sim, why));
     change_bodies(sim, &sim->scene->stage[stage]);
     TRY(upload_movers(sim, why));
+    TRY(begin_half_steps(sim, why));
     return simulation_enter_stage(sim, stage, why);
 }
 
@@ -473,9 +502,12 @@ static status enqueue_batch(simulation *sim, int steps, failure *why)
 {
     cl_kernel pair = launch_kernel(sim, "pair_stage"), particle = launch_kernel(sim, "particle_stage");
     clast_launch launch = launch_values(sim);
+    bool halves = live_keeps_half_steps(&sim->live);
     for (int s = 0; s < steps; s++) {
         double since = sim->time + (double)(s + 1) * sim->dt - sim->built_time;
         launch.step = s;
+        launch.lag = s == 0 ? sim->lag : sim->dt;
+        launch.kick = halves ? 0.5 * (launch.lag + sim->dt) : sim->dt;
         launch.face_row = sim->walls_move ? s : 0;
         launch.mover_row = sim->groups_move ? s : 0;
         for (int c = 0; c < 3; c++)
@@ -526,6 +558,7 @@ status simulation_advance(simulation *sim, int64_t steps, failure *why)
             TRY(run_batch(sim, allowed, &done, &rebuild, why));
         sim->step += done;
         sim->stage_steps += done;
+        sim->lag = done > 0 ? sim->dt : sim->lag;
         sim->time = time_after(sim, 0);
         steps -= done;
         if (rebuild)

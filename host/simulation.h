@@ -71,6 +71,7 @@ typedef struct simulation {
     int64_t stride;         /* grains that fields have room for: `id_count` up to a whole block; components of a grain stand together */
     bool particles_stale;   /* `where` lags behind */
     cl_mem where, partial, control, faces, movers, constants, built_position, scratch4;
+    cl_mem velocity_now, spin_now; /* synchronised, where velocities stand half a step behind */
     int64_t partial_capacity;
     contact_table table;
 
@@ -89,6 +90,7 @@ typedef struct simulation {
     double time;             /* s */
     int64_t step;
     double dt;               /* of the steps to come */
+    double lag;              /* twice the time by which half-step velocities are behind: the step before; 0 at the start of a stage */
     double segment_time;     /* time = segment_time + (step - segment_step) dt while dt stays */
     int64_t segment_step, stage_steps;
     double built_time;       /* when the table was built */
@@ -176,6 +178,10 @@ typedef struct live_contact {
 status observe_partial(simulation *sim, int64_t doubles, failure *why);
 status observe_where(simulation *sim, failure *why);
 status observe_particle_sums(simulation *sim, particle_sums *out, failure *why);
+/* The same with the velocities that the laws are given, which an integrator may have extrapolated: no force is computed. */
+status observe_stored_sums(simulation *sim, particle_sums *out, failure *why);
+/* Velocities and spins (NULL without) at the time of the positions, in arrays of the device. */
+status observe_velocities(simulation *sim, cl_mem *velocity, cl_mem *spin, failure *why);
 status observe_contact_sums(simulation *sim, contact_sums *out, failure *why);
 /* Live contacts in the order of ids; forces as they stand. walls_only leaves the pairs out. Caller frees. */
 status observe_contacts(simulation *sim, bool walls_only, live_contact **out, int64_t *count, failure *why);

@@ -91,6 +91,8 @@ status state_save(simulation *sim, bundle *out, failure *why)
     bundle_add_f64(out, "run/time", sim->time);
     bundle_add_f64(out, "run/segment_time", sim->segment_time);
     bundle_add_f64(out, "run/dt", sim->dt);
+    if (live_keeps_half_steps(&sim->all))
+        bundle_add_f64(out, "run/lag", sim->lag);
     bundle_add_f64(out, "run/skin", sim->table.skin);
     bundle_add_i64(out, "run/left_count", sim->left_count);
     bundle_add_f64(out, "run/left_mass", sim->left_mass);
@@ -251,6 +253,8 @@ static status load_run(simulation *sim, const bundle *in, const char *path, int6
     TRY(load_number(in, path, "run/time", BUNDLE_F64, &sim->time, NULL, why));
     TRY(load_number(in, path, "run/segment_time", BUNDLE_F64, &sim->segment_time, NULL, why));
     TRY(load_number(in, path, "run/dt", BUNDLE_F64, &sim->dt, NULL, why));
+    if (live_keeps_half_steps(&sim->all))
+        TRY(load_number(in, path, "run/lag", BUNDLE_F64, &sim->lag, NULL, why));
     TRY(load_number(in, path, "run/skin", BUNDLE_F64, &sim->table.skin, NULL, why));
     TRY(load_number(in, path, "run/left_count", BUNDLE_I64, NULL, &sim->left_count, why));
     TRY(load_number(in, path, "run/left_mass", BUNDLE_F64, &sim->left_mass, NULL, why));

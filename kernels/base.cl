@@ -109,9 +109,13 @@ typedef struct contact {
     real contact_inverse, radius_inverse; /* 1/sqrt(r* d), 0 where the two do not touch; 1/r* */
     real arm_i, arm_j;   /* of the friction force */
     vec3 slip;           /* tangential relative velocity of the surfaces */
-    vec3 turn;           /* rate at which the normal turns */
     vec3 spin_i, spin_j;
-    real dt;
+    real dt;             /* of the step to come */
+    /* what histories advance by: motion over the step that led here (under semi-implicit Euler that of its end) */
+    real elapsed;        /* its length */
+    real past_approach;
+    vec3 past_slip, past_spin_i, past_spin_j;
+    vec3 turn;           /* rate at which the normal turned */
     int class;           /* row of the contact constants */
     __global const real *value; /* that row */
 } contact;

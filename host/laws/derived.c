@@ -75,3 +75,25 @@ const law law_semi_implicit_euler = {
     .source = "TM sec. 4",
     .kernel_file = "effect/integrator_semi_implicit_euler.cl",
 };
+
+const law law_velocity_verlet = {
+    .name = "velocity_verlet",
+    .slot = SLOT_INTEGRATOR,
+    .doc = "Leapfrog: velocities half a step behind the positions; laws are given the extrapolated one.",
+    .source = "Swope et al. 1982",
+    .kernel_file = "effect/integrator_velocity_verlet.cl",
+    .more_files = {"effect/integrator_no_spin.cl"},
+    .pair_fields = {&field_half_velocity},
+    .particle_fields = {&field_half_velocity},
+};
+
+const law law_velocity_verlet_spin = {
+    .name = "velocity_verlet",
+    .slot = SLOT_INTEGRATOR,
+    .doc = "Leapfrog: velocities and spins half a step behind the positions; laws are given the extrapolated ones.",
+    .source = "Swope et al. 1982",
+    .kernel_file = "effect/integrator_velocity_verlet.cl",
+    .more_files = {"effect/integrator_half_spin.cl"},
+    .pair_fields = {&field_half_velocity, &field_half_spin},
+    .particle_fields = {&field_half_velocity, &field_half_spin},
+};

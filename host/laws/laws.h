@@ -6,7 +6,7 @@
 extern const law law_hertz, law_linear, law_mindlin, law_coulomb_linear, law_elastic_plastic, law_constant_torque, law_local_damping,
     law_viscous_damping;
 extern const law law_composition_several, law_periodic_box, law_motion_groups, law_rotation_spin, law_slip_single, law_slip_two,
-    law_walls_planes, law_walls_finite, law_orientation_quaternion, law_semi_implicit_euler;
+    law_walls_planes, law_walls_finite, law_orientation_quaternion, law_semi_implicit_euler, law_velocity_verlet, law_velocity_verlet_spin;
 
 double effective_shear_modulus(const contact_class *class, int mindlin);
 double tangential_damping_ratio(const contact_class *class);

@@ -1,4 +1,16 @@
-/* integrator: semi-implicit Euler, velocity first (TM sec. 4). */
+/* integrator: semi-implicit Euler, velocity first (TM sec. 4). Velocity and spin are those of the step's end. */
+#define INTEGRATOR_PAIR_FIELDS(READ, WRITE)
+#define INTEGRATOR_PAST_VELOCITY(i, v) (v)
+#define INTEGRATOR_PAST_SPIN(i, w) (w)
+#define INTEGRATOR_ELAPSED(launch) (launch)->dt
+#define INTEGRATOR_PARTICLE_FIELDS(READ, WRITE)
+#define INTEGRATOR_VELOCITY(i, v) (v)
+#define INTEGRATOR_SPIN(i, w) (w)
+#define INTEGRATOR_KEEP_VELOCITY(i, v)
+#define INTEGRATOR_KEEP_SPIN(i, w)
+#define INTEGRATOR_AHEAD(kept, ahead) (kept)
+#define INTEGRATOR_DAMPING_LAG R(1.0)
+
 INLINE vec3 integrate_velocity(vec3 velocity, vec3 acceleration, real dt)
 {
     return add_scaled(velocity, dt, acceleration);

@@ -29,13 +29,13 @@ INLINE real rolling_inertia(const contact *c)
 /* Turned with the pair: by the turn of the normal and the mean spin about it. */
 INLINE vec3 rolling_turn(const contact *c, vec3 spring)
 {
-    real twist = R(0.5) * dot3(add(c->spin_i, c->spin_j), c->n);
-    return turn_by(spring, scale(c->dt, add_scaled(c->turn, twist, c->n)));
+    real twist = R(0.5) * dot3(add(c->past_spin_i, c->past_spin_j), c->n);
+    return turn_by(spring, scale(c->elapsed, add_scaled(c->turn, twist, c->n)));
 }
 
-INLINE vec3 rolling_rate(const contact *c)
+INLINE vec3 rolling_rate(const contact *c, vec3 spin_i, vec3 spin_j)
 {
-    vec3 rate = sub(c->spin_i, c->spin_j);
+    vec3 rate = sub(spin_i, spin_j);
     return add_scaled(rate, (ROLLING_TWIST - R(1.0)) * dot3(rate, c->n), c->n);
 }
 
@@ -49,8 +49,8 @@ INLINE mode rolling_mode(const contact *c)
 INLINE void rolling_moment(const contact *c, rolling_state *s, response *out)
 {
     mode m = rolling_mode(c);
-    vec3 rate = rolling_rate(c);
-    vec3 spring = add_scaled(rolling_turn(c, s->spring), c->dt, rate);
+    vec3 rate = rolling_rate(c, c->spin_i, c->spin_j);
+    vec3 spring = add_scaled(rolling_turn(c, s->spring), c->elapsed, rolling_rate(c, c->past_spin_i, c->past_spin_j));
     vec3 trial = add_scaled(scale(-m.stiffness, spring), -m.damping, rate);
     real size = sqrt(dot3(trial, trial)), limit = c->value[ROLLING_FRICTION] * c->radius_eff * out->bearing;
     real compliance = c->value[ROLLING_COMPLIANCE] * c->contact_inverse * c->radius_inverse * c->radius_inverse;

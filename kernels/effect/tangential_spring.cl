@@ -5,16 +5,16 @@
  * step's turn is of second order and is dropped. (TM; docs/theory.md.) */
 INLINE vec3 spring_turn(const contact *c, vec3 spring)
 {
-    real twist = R(0.5) * dot3(add(c->spin_i, c->spin_j), c->n);
-    vec3 turned = turn_by(spring, scale(c->dt, add_scaled(c->turn, twist, c->n)));
+    real twist = R(0.5) * dot3(add(c->past_spin_i, c->past_spin_j), c->n);
+    vec3 turned = turn_by(spring, scale(c->elapsed, add_scaled(c->turn, twist, c->n)));
     return add_scaled(turned, -dot3(turned, c->n), c->n);
 }
 
 /* While the overlap falls, the spring is scaled with the stiffness, so that unloading creates no energy. */
 INLINE real spring_unloading(const contact *c)
 {
-    real before = c->overlap - c->approach * c->dt;
-    bool falls = c->approach < R(0.0) && c->overlap > R(0.0);
+    real before = c->overlap - c->past_approach * c->elapsed;
+    bool falls = c->past_approach < R(0.0) && c->overlap > R(0.0);
     return falls ? sqrt(c->overlap / (falls ? before : R(1.0))) : R(1.0);
 }
 
@@ -42,7 +42,7 @@ INLINE void tangential_force(const contact *c, slip_state *slip, tangential_stat
     vec3 spring = spring_turn(c, s->spring);
     if (TANGENTIAL_RESCALED)
         spring = scale(spring_unloading(c), spring);
-    spring = add_scaled(spring, c->dt, c->slip);
+    spring = add_scaled(spring, c->elapsed, c->past_slip);
     vec3 trial = add_scaled(scale(-stiffness, spring), -damping, c->slip);
     real factor = slip_factor(c, out->bearing, sqrt(dot3(trial, trial)), slip);
     out->tangential = scale(factor, trial);

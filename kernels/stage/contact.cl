@@ -5,7 +5,8 @@
     READ(real, contact_constants) \
     WRITE(real, force) COMPOSITION_PAIR_FIELDS(READ, WRITE) MOTION_PAIR_FIELDS(READ, WRITE) ROTATION_PAIR_FIELDS(READ, WRITE)    \
     BONDING_PAIR_FIELDS(READ, WRITE) BOND_PAIR_FIELDS(READ, WRITE) COHESION_PAIR_FIELDS(READ, WRITE)                           \
-    SLIP_PAIR_FIELDS(READ, WRITE) TANGENTIAL_PAIR_FIELDS(READ, WRITE) ROLLING_PAIR_FIELDS(READ, WRITE) WALLS_PAIR_FIELDS(READ, WRITE)
+    SLIP_PAIR_FIELDS(READ, WRITE) TANGENTIAL_PAIR_FIELDS(READ, WRITE) ROLLING_PAIR_FIELDS(READ, WRITE) WALLS_PAIR_FIELDS(READ, WRITE)     \
+    INTEGRATOR_PAIR_FIELDS(READ, WRITE)
 #define PAIR_DECLARE PAIR_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PAIR_PASS PAIR_FIELDS(PASS, PASS)
 
@@ -26,12 +27,15 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
 {
     int i = owner[k], j = other[k];
     vec3 d = periodic_nearest(launch, sub(GRAIN3(position, j), GRAIN3(position, i)));
-    vec3 u = sub(GRAIN3(velocity, i), GRAIN3(velocity, j));
+    vec3 v_i = GRAIN3(velocity, i), v_j = GRAIN3(velocity, j), u = sub(v_i, v_j);
+    vec3 past = sub(INTEGRATOR_PAST_VELOCITY(i, v_i), INTEGRATOR_PAST_VELOCITY(j, v_j));
     real d2 = dot3(d, d);
     c->radius_i = radius[i];
     c->radius_j = radius[j];
     c->spin_i = ROTATION_LOAD(launch, i);
     c->spin_j = ROTATION_LOAD(launch, j);
+    c->past_spin_i = INTEGRATOR_PAST_SPIN(i, c->spin_i);
+    c->past_spin_j = INTEGRATOR_PAST_SPIN(j, c->spin_j);
     c->mass_i = motion_mass(MOTION_GRAIN(i), mass[i]);
     c->mass_j = motion_mass(MOTION_GRAIN(j), mass[j]);
     c->class = composition_class(COMPOSITION_GRAIN(i), COMPOSITION_GRAIN(j));
@@ -50,9 +54,11 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     c->arm_i = c->radius_i - shrink * c->radius_j;
     c->arm_j = c->radius_j - shrink * c->radius_i;
     c->approach = dot3(u, c->n);
-    vec3 across = add_scaled(u, -c->approach, c->n);
-    c->turn = scale(-inverse, cross3(c->n, u));
-    c->slip = add(across, cross3(add_scaled(scale(c->arm_i, c->spin_i), c->arm_j, c->spin_j), c->n));
+    c->past_approach = dot3(past, c->n);
+    c->turn = scale(-inverse, cross3(c->n, past));
+    c->slip = add(add_scaled(u, -c->approach, c->n), cross3(add_scaled(scale(c->arm_i, c->spin_i), c->arm_j, c->spin_j), c->n));
+    c->past_slip = add(add_scaled(past, -c->past_approach, c->n),
+                       cross3(add_scaled(scale(c->arm_i, c->past_spin_i), c->arm_j, c->past_spin_j), c->n));
     contact_complete(c);
 }
 
@@ -63,6 +69,7 @@ INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_
     c->radius_i = radius[i];
     c->radius_j = c->radius_i;
     c->spin_i = ROTATION_LOAD(launch, i);
+    c->past_spin_i = INTEGRATOR_PAST_SPIN(i, c->spin_i);
     c->mass_i = mass[i];
     c->mass_j = R(1e30);
     WALLS_CONTACT(launch, other[k], x, v, c, touch);
@@ -77,6 +84,10 @@ INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_
     vec3 u = sub(v, touch->velocity);
     c->approach = dot3(u, c->n);
     c->slip = add(add_scaled(u, -c->approach, c->n), cross3(scale(c->arm_i, c->spin_i), c->n));
+    vec3 past = sub(INTEGRATOR_PAST_VELOCITY(i, v), touch->velocity);
+    c->past_approach = dot3(past, c->n);
+    c->past_slip = add(add_scaled(past, -c->past_approach, c->n), cross3(scale(c->arm_i, c->past_spin_i), c->n));
+    c->past_spin_j = c->spin_j;
     contact_complete(c);
 }
 

@@ -49,7 +49,7 @@ INLINE void observe_record(const clast_launch *launch, int k, bool wall PAIR_DEC
         contact_of_wall(launch, k, &c, &touch PAIR_PASS);
     else
         contact_of_grains(launch, k, &c PAIR_PASS);
-    c.dt = R(0.0);
+    c.dt = c.elapsed = R(0.0);
     c.value = contact_constants + c.class * CONTACT_CONSTANTS;
     PAIR_LOAD_STATE(launch, k, s);
     real smaller = wall || c.radius_i < c.radius_j ? c.radius_i : c.radius_j;
@@ -78,7 +78,7 @@ __kernel void limit_records(const clast_launch launch PAIR_DECLARE)
         contact_of_wall(&launch, k, &c, &touch PAIR_PASS);
     else
         contact_of_grains(&launch, k, &c PAIR_PASS);
-    c.dt = R(0.0);
+    c.dt = c.elapsed = R(0.0);
     c.value = contact_constants + c.class * CONTACT_CONSTANTS;
     real twice = wall ? R(1.0) : R(2.0);
     mode n = normal_mode(&c), t = tangential_mode(&c), r = rolling_mode(&c);
@@ -91,10 +91,10 @@ __kernel void limit_records(const clast_launch launch PAIR_DECLARE)
     LIMIT_STORE(&launch, k, twice, c.n, n, t, r);
 }
 
-/* Largest dt with dt^2 a + 2 dt b < 4 (semi-implicit Euler). */
-INLINE real limit_step(real a, real b)
+/* Largest dt with dt^2 a + 2 dt b < 4; b counts twice where laws are given an extrapolated velocity (docs/theory.md). */
+INLINE real limit_step(real a, real damping)
 {
-    real s = b + sqrt(b * b + R(4.0) * a);
+    real b = INTEGRATOR_DAMPING_LAG * damping, s = b + sqrt(b * b + R(4.0) * a);
     return s > R(0.0) ? R(4.0) / s : R(1e30);
 }
 
@@ -206,7 +206,7 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
     c.approach = R(0.0);
     c.class = class;
     c.value = contact_constants + class * CONTACT_CONSTANTS;
-    c.dt = R(0.0);
+    c.dt = c.elapsed = R(0.0);
     real energy = R(0.5) * c.mass_eff * (real)speed * (real)speed, impact_low = R(0.0), impact_high = c.radius_eff;
     real rest_low = R(0.0), rest_high = c.radius_eff;
     real pulled_low = R(0.0), pulled_high = c.radius_eff; /* an impact with what pulls: deeper */

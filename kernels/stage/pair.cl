@@ -15,6 +15,7 @@
 /* The rest of a record once its geometry is known; `keep` writes the history. */
 #define PAIR_LAWS(keep)                                                  \
     c.dt = (real)launch->dt;                                             \
+    c.elapsed = (real)INTEGRATOR_ELAPSED(launch);                        \
     c.value = contact_constants + c.class * CONTACT_CONSTANTS;           \
     PAIR_LOAD_STATE(launch, k, s);                                       \
     contact_laws(&c, &s, &out);                                          \

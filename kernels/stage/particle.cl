@@ -2,7 +2,7 @@
 #define PARTICLE_FIELDS(READ, WRITE)                                                                                              \
     READ(uint, slot_offset) READ(int, slots) READ(real, force) READ(real, radius) READ(real, mass) WRITE(real, position) WRITE(real, velocity)     \
     READ(real, built_position) MOTION_PARTICLE_FIELDS(READ, WRITE) \
-    ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE)
+    ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE) INTEGRATOR_PARTICLE_FIELDS(READ, WRITE)
 #define PARTICLE_DECLARE PARTICLE_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PARTICLE_PASS PARTICLE_FIELDS(PASS, PASS)
 
@@ -27,21 +27,26 @@ INLINE void particle_gather(const clast_launch *launch, int block, int lane, vec
 /* One step of grain i; returns the square of its displacement since the table was built, relative to the common one. */
 INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t PARTICLE_DECLARE)
 {
-    real dt = (real)launch->dt, r = radius[i];
+    real dt = (real)launch->dt, kick = (real)launch->kick, r = radius[i];
     real m = mass[i], inertia = R(0.4) * m * r * r;
     int mover_i = MOTION_GRAIN(i);
     vec3 x = GRAIN3(position, i), v = GRAIN3(velocity, i), w = ROTATION_LOAD(launch, i);
     __global const clast_mover *row = MOTION_ROW(launch);
     f = body_force(add_scaled(f, m, from3(launch->gravity)), v, m);
     t = body_force(t, w, inertia);
-    vec3 v1 = integrate_velocity(v, scale(R(1.0) / m, f), dt);
+    vec3 a = scale(R(1.0) / m, f);
+    vec3 v1 = integrate_velocity(INTEGRATOR_VELOCITY(i, v), a, kick);
+    vec3 w1 = rotation_advance(INTEGRATOR_SPIN(i, w), t, inertia, kick);
     vec3 x1 = motion_position(row, mover_i, integrate_position(x, v1, dt), x);
-    v1 = motion_velocity(row, mover_i, v1, x1);
-    vec3 w1 = motion_spin(row, mover_i, rotation_advance(w, t, inertia, dt));
+    vec3 v2 = motion_velocity(row, mover_i, INTEGRATOR_AHEAD(v1, integrate_velocity(v1, a, R(0.5) * dt)), x1);
+    vec3 w2 = motion_spin(row, mover_i, INTEGRATOR_AHEAD(w1, rotation_advance(w1, t, inertia, R(0.5) * dt)));
+    INTEGRATOR_KEEP_VELOCITY(i, motion_velocity(row, mover_i, v1, x1));
+    INTEGRATOR_KEEP_SPIN(i, motion_spin(row, mover_i, w1));
+    w1 = motion_spin(row, mover_i, w1);
     x1 = periodic_wrap(launch, x1);
     SET_GRAIN3(position, i, x1);
-    SET_GRAIN3(velocity, i, v1);
-    ROTATION_STORE(launch, i, w1);
+    SET_GRAIN3(velocity, i, v2);
+    ROTATION_STORE(launch, i, w2);
     ORIENTATION_ADVANCE(launch, i, w1);
     vec3 moved = periodic_nearest(launch, sub(sub(x1, GRAIN3(built_position, i)), from3(launch->drift)));
     return dot3(moved, moved);

@@ -1,5 +1,6 @@
 /* A scene from text, run step by step and read: what the tests of the physics share. Every failure of the program ends the test with the
- * program's own message. CLAST_KERNELS names a directory of kernels to test instead of the embedded ones. */
+ * program's own message. CLAST_KERNELS names a directory of kernels to test instead of the embedded ones, CLAST_TEST_SET a setting
+ * (`integrator=velocity_verlet`) that every scene is given. */
 #ifndef CLAST_TESTS_CASE_H
 #define CLAST_TESTS_CASE_H
 #include "bed.h"
@@ -74,6 +75,13 @@ typedef struct physics_case {
             fail_msg("%s", must_why_.text); \
     } while (0)
 
+/* True where the scenes of this run advance by velocity Verlet. */
+static inline bool case_verlet(void)
+{
+    const char *set = getenv("CLAST_TEST_SET");
+    return set && strstr(set, "velocity_verlet");
+}
+
 /* One device for all cases of a program. */
 static inline device *case_device(void)
 {
@@ -89,7 +97,8 @@ static inline physics_case case_open(text *t)
     physics_case c = {0};
     if (!strstr(t->at, "\nstages:"))
         put(t, "\nstages: [{name: run, until: {steps: 1}}]\n");
-    MUST(scene_read_text(t->at, "case.yaml", 0, NULL, &c.scene, why));
+    char *set = getenv("CLAST_TEST_SET");
+    MUST(scene_read_text(t->at, "case.yaml", set ? 1 : 0, &set, &c.scene, why));
     MUST(bed_generate(c.scene, &c.bed, why));
     MUST(simulation_create(c.scene, &c.bed, case_device(), getenv("CLAST_KERNELS"), &c.sim, why));
     MUST(simulation_begin_stage(c.sim, 0, why));

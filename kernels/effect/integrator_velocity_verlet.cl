@@ -1,0 +1,20 @@
+/* integrator: velocity Verlet in its leapfrog form (Swope et al. 1982). half_velocity is kept half a step behind the positions and is what
+ * advances them, and the histories of contacts; `velocity`, which the laws are given, is ahead of it by half a step of the last acceleration.
+ * Behind this file comes one of integrator_half_spin.cl and integrator_no_spin.cl. Reads and writes half_velocity. */
+#define INTEGRATOR_PAST_VELOCITY(i, v) GRAIN3(half_velocity, i)
+#define INTEGRATOR_ELAPSED(launch) (launch)->lag
+#define INTEGRATOR_VELOCITY(i, v) GRAIN3(half_velocity, i)
+#define INTEGRATOR_KEEP_VELOCITY(i, v) SET_GRAIN3(half_velocity, i, v)
+#define INTEGRATOR_AHEAD(kept, ahead) (ahead)
+/* The extrapolation makes a damper count twice towards the limit of the step (docs/theory.md). */
+#define INTEGRATOR_DAMPING_LAG R(2.0)
+
+INLINE vec3 integrate_velocity(vec3 velocity, vec3 acceleration, real dt)
+{
+    return add_scaled(velocity, dt, acceleration);
+}
+
+INLINE vec3 integrate_position(vec3 position, vec3 velocity, real dt)
+{
+    return add_scaled(position, dt, velocity);
+}
