@@ -137,8 +137,10 @@ static status check_numbers(const scene *s, const bed *b, int64_t i, int64_t ind
     }
     if (!(b->radius[i] > 0.0 && isfinite(b->radius[i])))
         return bed_refuse(s, group, why, "particle %" PRId64 " has radius %g m; it must be above 0 and finite", index, b->radius[i]);
-    if (isinf(b->temperature[i]) || b->temperature[i] < 0.0)
-        return bed_refuse(s, group, why, "particle %" PRId64 " has temperature %g K; it must be 0 or more", index, b->temperature[i]);
+    if (isinf(b->temperature[i]) || b->temperature[i] <= 0.0)
+        return bed_refuse(s, group, why, "particle %" PRId64 " has temperature %g K; it must be above 0", index, b->temperature[i]);
+    if (isnan(b->temperature[i]) && scene_has_temperature(s))
+        return bed_refuse(s, group, why, "particle %" PRId64 " has no temperature; add `temperature_k` to the group", index);
     return s->dimensions == 2 ? check_flat(s, b, i, index, why) : STATUS_OK;
 }
 

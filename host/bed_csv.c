@@ -137,8 +137,8 @@ static status read_cell(const table *t, column k, const char *cell, double *valu
                     cell);
     if (k == RADIUS && !(*value > 0.0))
         return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": radius_m is `%.60s`; it must be above 0", t->path, t->line_number, cell);
-    if (k == TEMPERATURE && *value < 0.0)
-        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": temperature_k is `%.60s`; it must be 0 or more", t->path, t->line_number, cell);
+    if (k == TEMPERATURE && !(*value > 0.0))
+        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": temperature_k is `%.60s`; it must be above 0", t->path, t->line_number, cell);
     return STATUS_OK;
 }
 

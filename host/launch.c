@@ -20,15 +20,20 @@ static const stage_list stage_lists[] = {
     {"pair_stage", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"pair_probe", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"observe_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
+    {"heat_conductances", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"limit_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"particle_stage", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"particle_synchronise", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_limit", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_sums", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
 };
 
 /* The order in which PAIR_FIELDS and PARTICLE_FIELDS name the slots. */
 static const slot_id pair_slots[] = {SLOT_COMPOSITION, SLOT_MOTION, SLOT_ROTATION, SLOT_BONDING, SLOT_BOND, SLOT_COHESION,
-                                     SLOT_SLIP,        SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_WALLS, SLOT_INTEGRATOR};
-static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENTATION, SLOT_INTEGRATOR};
+                                     SLOT_SLIP,        SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_WALLS, SLOT_TEMPERATURE, SLOT_CONDUCTION, SLOT_WALL_HEAT,
+                                     SLOT_INTEGRATOR};
+static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENTATION, SLOT_TEMPERATURE, SLOT_SUBSTANCE, SLOT_ENVIRONMENT,
+                                         SLOT_CONDUCTION, SLOT_SOURCE, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY, SLOT_INTEGRATOR};
 
 int launch_argument_names(const live_laws *live, const char *kernel, const char **names, int max)
 {
@@ -64,7 +69,12 @@ static cl_mem named_buffer(simulation *sim, const char *name)
                {"contact_constants", sim->constants},
                {"built_position", sim->built_position},
                {"faces", sim->faces},
-               {"movers", sim->movers}};
+               {"movers", sim->movers},
+               {"grain_constants", sim->heat.constants},
+               {"environment", sim->heat.environment},
+               {"profile", sim->heat.profile},
+               {"wall_heat", sim->heat.walls},
+               {"group_heat", sim->heat.groups}};
     for (size_t n = 0; n < sizeof own / sizeof *own; n++)
         if (strcmp(own[n].name, name) == 0)
             return own[n].mem;
@@ -119,6 +129,8 @@ static bool has_kernel(const simulation *sim, const char *name)
 {
     if (strcmp(name, "particle_synchronise") == 0)
         return live_keeps_half_steps(&sim->live);
+    if (strncmp(name, "heat_", 5) == 0)
+        return sim->live.law[SLOT_TEMPERATURE] != NULL;
     return !strstr(name, "_walls") || sim->live.law[SLOT_WALLS];
 }
 
@@ -135,7 +147,7 @@ status launch_open(simulation *sim, failure *why)
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
-                                        "particle_synchronise"};
+                                        "particle_synchronise", "heat_conductances", "heat_limit", "heat_sums"};
     sim->kernel_count = 0;
     for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
         if (!has_kernel(sim, names[n]))

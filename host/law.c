@@ -6,7 +6,8 @@
 #include <string.h>
 
 const law *const laws[] = {&law_hertz,        &law_linear,        &law_mindlin, &law_coulomb_linear, &law_elastic_plastic,
-                           &law_constant_torque, &law_local_damping, &law_viscous_damping, NULL};
+                           &law_constant_torque, &law_local_damping, &law_viscous_damping, &law_overlap_area, &law_newton,
+                           &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, NULL};
 
 static const struct {
     const char *name;
@@ -17,6 +18,10 @@ static const struct {
     [SLOT_BONDING] = {"bonding", false},         [SLOT_BOND] = {"bond", false},              [SLOT_COHESION] = {"cohesion", false},
     [SLOT_SLIP] = {"slip", false},
     [SLOT_TANGENTIAL] = {"tangential", true},    [SLOT_ROLLING] = {"rolling", true},        [SLOT_WALLS] = {"walls", false},
+    [SLOT_TEMPERATURE] = {"temperature", false}, [SLOT_SUBSTANCE] = {"substance", false},   [SLOT_CONDUCTION] = {"conduction", true},
+    [SLOT_WALL_HEAT] = {"wall_heat", false},     [SLOT_ENVIRONMENT] = {"environment", false}, [SLOT_CONVECTION] = {"convection", true},
+    [SLOT_RADIATION] = {"radiation", true},      [SLOT_SOURCE] = {"source", false},         [SLOT_HEAT_GENERATION] = {"heat_generation", true},
+    [SLOT_THERMAL_GROUPS] = {"thermal_groups", false}, [SLOT_HEAT_TALLY] = {"heat_tally", false},
     [SLOT_BODY] = {"body", true},                [SLOT_ORIENTATION] = {"orientation", false}, [SLOT_INTEGRATOR] = {"integrator", false},
 };
 
@@ -49,7 +54,9 @@ const law *law_find(slot_id slot, const char *name)
 const property *const *material_properties(void)
 {
     static const property *const all[] = {&property_density, &property_youngs_modulus, &property_poissons_ratio,
-                                          &property_conductivity, &property_specific_heat, NULL};
+                                          &property_conductivity, &property_specific_heat,
+                                          &property_film_thickness, &property_film_conductivity, &property_real_modulus,
+                                          &property_emissivity, &property_heat_generation, NULL};
     return all;
 }
 
@@ -59,5 +66,11 @@ const property *const *interaction_properties(void)
                                           &property_rolling_damping,   &property_friction_static,  &property_friction_dynamic,
                                           &property_rolling_friction,  &property_normal_stiffness, &property_tangential_stiffness,
                                           NULL};
+    return all;
+}
+
+const property *const *gas_properties(void)
+{
+    static const property *const all[] = {&property_gas_conductivity, &property_gas_specific_heat, &property_gas_viscosity, &property_gas_density, NULL};
     return all;
 }

@@ -10,6 +10,8 @@ typedef enum slot_id {
     SLOT_PERIODIC,    /* derived: nearest image */
     SLOT_MOTION,      /* derived: all free, or groups with prescribed motion */
     SLOT_ROTATION,    /* derived: spin, where a law or an output asks for it */
+    SLOT_TEMPERATURE, /* derived: temperature and its step, where a thermal law or an output asks for them */
+    SLOT_SUBSTANCE,   /* derived: constants of the grains' materials, where several have a temperature */
     SLOT_NORMAL,
     SLOT_BONDING, /* derived: what lets a contact bond */
     SLOT_BOND,
@@ -17,8 +19,17 @@ typedef enum slot_id {
     SLOT_SLIP, /* derived: one friction coefficient, or static and dynamic with the sliding flag */
     SLOT_TANGENTIAL,
     SLOT_ROLLING,
-    SLOT_WALLS, /* derived: the shapes present */
+    SLOT_CONDUCTION,
+    SLOT_WALLS,     /* derived: the shapes present */
+    SLOT_WALL_HEAT, /* derived: walls that are not adiabatic */
     SLOT_BODY,
+    SLOT_ENVIRONMENT, /* derived: temperature and motion of what surrounds the bed, where a law reads them */
+    SLOT_CONVECTION,
+    SLOT_RADIATION,
+    SLOT_SOURCE,
+    SLOT_HEAT_GENERATION,
+    SLOT_THERMAL_GROUPS, /* derived: grains of prescribed temperature, or heated by a given flux */
+    SLOT_HEAT_TALLY,     /* derived: heat by path, where an observable asks for it */
     SLOT_ORIENTATION, /* derived: quaternions, where an output asks for them */
     SLOT_INTEGRATOR,
     SLOT_COUNT
@@ -85,9 +96,11 @@ typedef struct law {
     law_option options[LAW_OPTIONS_MAX]; /* ends with a NULL key */
     const property *material_needs[LAW_PROPERTIES_MAX];
     const property *interaction_needs[LAW_PROPERTIES_MAX];
+    const property *gas_needs[LAW_PROPERTIES_MAX]; /* of the environment */
     const field *pair_fields[LAW_ARGUMENTS_MAX];     /* what it adds to the pair stage's arguments, in this order */
     const field *particle_fields[LAW_ARGUMENTS_MAX]; /* what it adds to the particle stage's */
     bool turns; /* acts on spins, which must then be followed */
+    bool reads_temperature; /* of the bodies of a contact */
     const char *parameters[LAW_PARAMETERS_MAX];      /* constants a contact class carries for it, in SI */
     /* Fills parameters for one contact class. `option` are this law's option values. */
     void (*derive)(const contact_class *class, const double *option, double *parameter);
@@ -95,6 +108,9 @@ typedef struct law {
     void (*constants)(const double *option, char *text, size_t size);
     /* The same from the whole scene: forms of a law that are cheaper where every contact allows them. May be NULL. */
     void (*scene_constants)(const struct scene *scene, char *text, size_t size);
+    const char *grain_parameters[LAW_PARAMETERS_MAX]; /* constants that a grain's material carries for it, in SI */
+    /* Fills them for one material in a scene stage. */
+    void (*derive_grain)(const struct scene *scene, int stage, int material, const double *option, double *parameter);
 } law;
 
 /* Null-terminated list of every law that a scene may name. */
@@ -109,5 +125,7 @@ bool slot_is_listed(slot_id slot);
 /* Every property that some law may read, each once; material or interaction scope. Null-terminated, owned by the library. */
 const property *const *material_properties(void);
 const property *const *interaction_properties(void);
+/* What the environment's gas may give. */
+const property *const *gas_properties(void);
 
 #endif

@@ -117,10 +117,22 @@ static status approach_speed(simulation *sim, double *grains, double *walls, fai
     return STATUS_OK;
 }
 
+static status note_heat(simulation *sim, step_limit *out, failure *why)
+{
+    TRY(heat_limit_find(sim, &out->heat, why));
+    note(out, out->heat.conduction, "conduction of heat");
+    note(out, out->heat.convection, "convection");
+    note(out, out->heat.radiation, "radiation");
+    note(out, out->heat.all, "conduction, convection and radiation together");
+    return STATUS_OK;
+}
+
 status limit_find(simulation *sim, step_limit *out, failure *why)
 {
     *out = (step_limit){.limit_s = INFINITY, .recommended_s = INFINITY, .live_s = INFINITY, .expected_s = INFINITY};
     snprintf(out->binds, sizeof out->binds, "nothing");
+    TRY(note_heat(sim, out, why));
+    out->recommended_s = SAFETY * out->limit_s;
     if (!sim->live.law[SLOT_NORMAL] || sim->count == 0)
         return STATUS_OK;
     double normal, turning, speed, wall_speed, weight = expected_weight(sim);

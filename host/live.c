@@ -8,17 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool wants_output(const scene *scene, const char *name)
-{
-    for (int f = 0; f < scene->output.field_count; f++)
-        if (strcmp(scene->output.fields[f], name) == 0)
-            return true;
-    for (int o = 0; o < scene->output.observable_count; o++)
-        if (strcmp(scene->output.observables[o], name) == 0)
-            return true;
-    return false;
-}
-
 static bool group_moves(const scene *scene, int group)
 {
     if (scene->group[group].fixed || scene->group[group].motion.count > 0)
@@ -76,6 +65,43 @@ static bool law_turns(const law *l)
     return l && l->turns;
 }
 
+static const law *temperature_law(const live_laws *live)
+{
+    for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
+        if (live->law[slot] && live->law[slot]->reads_temperature)
+            return &law_temperature_pairs;
+    return &law_temperature_grains;
+}
+
+static bool any_wall_heat(const scene *scene, wall_heat_kind kind)
+{
+    for (int stage = -1; stage < scene->stage_count; stage++)
+        for (int w = 0; w < scene->wall_count; w++)
+            if (wall_heat_kind_of(scene_wall_heat(scene, stage, w)) == kind)
+                return true;
+    return false;
+}
+
+/* Slots that a scene with heat fills of itself. */
+static void derive_heat(const scene *scene, live_laws *out)
+{
+    const environment *e = &scene->environment;
+    bool profile = (e->temperature_k.given && e->temperature_k.kind == QUANTITY_AXIS) ||
+                   (e->gas_velocity_m_s.given && e->gas_velocity_m_s.kind == QUANTITY_AXIS);
+    out->law[SLOT_TEMPERATURE] = temperature_law(out);
+    if (scene->material_count > 1)
+        out->law[SLOT_SUBSTANCE] = &law_substance_several;
+    if (out->law[SLOT_CONDUCTION] && any_wall_heat(scene, WALL_HEAT_TEMPERATURE))
+        out->law[SLOT_WALL_HEAT] = &law_wall_temperature;
+    if (out->law[SLOT_CONVECTION] || out->law[SLOT_RADIATION])
+        out->law[SLOT_ENVIRONMENT] = profile ? &law_environment_profile : &law_environment_uniform;
+    for (int g = 0; g < scene->group_count; g++)
+        if (scene->group[g].thermal != THERMAL_FREE)
+            out->law[SLOT_THERMAL_GROUPS] = &law_thermal_groups;
+    if (scene_tallies_heat(scene))
+        out->law[SLOT_HEAT_TALLY] = &law_heat_tally;
+}
+
 void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
 {
     memset(out, 0, sizeof *out);
@@ -86,8 +112,8 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         out->law[slot] = e->law;
         out->option[slot] = e->option;
     }
-    bool turning = law_turns(out->law[SLOT_BOND]) || scene_effect(scene, -1, SLOT_TANGENTIAL) || scene_effect(scene, -1, SLOT_ROLLING) || wants_output(scene, "spin") ||
-                   wants_output(scene, "orientation") || wants_output(scene, "rotational_energy") || any_spin(bed);
+    bool turning = law_turns(out->law[SLOT_BOND]) || scene_effect(scene, -1, SLOT_TANGENTIAL) || scene_effect(scene, -1, SLOT_ROLLING) ||
+                   scene_outputs(scene, "spin") || scene_outputs(scene, "orientation") || scene_outputs(scene, "rotational_energy") || any_spin(bed);
     if (scene->material_count > 1)
         out->law[SLOT_COMPOSITION] = &law_composition_several;
     if (scene->domain.given && (scene->domain.periodic[0] || scene->domain.periodic[1] || scene->domain.periodic[2]))
@@ -100,10 +126,12 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         out->law[SLOT_SLIP] = two_frictions(scene) ? &law_slip_two : &law_slip_single;
     if (scene->wall_count > 0)
         out->law[SLOT_WALLS] = any_finite_wall(scene) ? &law_walls_finite : &law_walls_planes;
-    if (wants_output(scene, "orientation"))
+    if (scene_outputs(scene, "orientation"))
         out->law[SLOT_ORIENTATION] = &law_orientation_quaternion;
     const law *verlet = turning ? &law_velocity_verlet_spin : &law_velocity_verlet;
     out->law[SLOT_INTEGRATOR] = scene->integrator == INTEGRATOR_VELOCITY_VERLET ? verlet : &law_semi_implicit_euler;
+    if (scene_has_temperature(scene))
+        derive_heat(scene, out);
 }
 
 void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, live_laws *out)
@@ -114,6 +142,12 @@ void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, liv
             out->law[slot] = NULL;
     if (!out->law[SLOT_TANGENTIAL])
         out->law[SLOT_SLIP] = NULL;
+    if (out->law[SLOT_TEMPERATURE])
+        out->law[SLOT_TEMPERATURE] = temperature_law(out);
+    if (!out->law[SLOT_CONDUCTION])
+        out->law[SLOT_WALL_HEAT] = NULL;
+    if (!out->law[SLOT_CONVECTION] && !out->law[SLOT_RADIATION])
+        out->law[SLOT_ENVIRONMENT] = NULL;
 }
 
 /* The file that fills a slot when no law does. */
@@ -124,6 +158,10 @@ static const char *none_file(slot_id slot)
         [SLOT_ROTATION] = "none/rotation.cl",       [SLOT_NORMAL] = "none/normal.cl",           [SLOT_BONDING] = "none/bonding.cl",
         [SLOT_BOND] = "none/bond.cl",               [SLOT_COHESION] = "none/cohesion.cl",       [SLOT_SLIP] = "none/slip.cl",
         [SLOT_TANGENTIAL] = "none/tangential.cl",   [SLOT_ROLLING] = "none/rolling.cl",         [SLOT_WALLS] = "none/walls.cl",
+        [SLOT_TEMPERATURE] = "none/temperature.cl", [SLOT_SUBSTANCE] = "none/substance.cl",     [SLOT_CONDUCTION] = "none/conduction.cl",
+        [SLOT_WALL_HEAT] = "none/wall_heat.cl",     [SLOT_ENVIRONMENT] = "none/environment.cl", [SLOT_CONVECTION] = "none/convection.cl",
+        [SLOT_RADIATION] = "none/radiation.cl",     [SLOT_SOURCE] = "none/source.cl",           [SLOT_HEAT_GENERATION] = "none/heat_generation.cl",
+        [SLOT_THERMAL_GROUPS] = "none/thermal_groups.cl", [SLOT_HEAT_TALLY] = "none/heat_tally.cl",
         [SLOT_BODY] = "none/body.cl",               [SLOT_ORIENTATION] = "none/orientation.cl", [SLOT_INTEGRATOR] = NULL,
     };
     return files[slot];
@@ -149,6 +187,8 @@ int live_files(const live_laws *live, const char **files, int max)
         files[count++] = stages[s];
     if (live_keeps_half_steps(live) && count < max)
         files[count++] = "stage/synchronise.cl";
+    if (live->law[SLOT_TEMPERATURE] && count < max)
+        files[count++] = "stage/heat.cl";
     return count;
 }
 
@@ -171,6 +211,50 @@ int live_constant_count(const live_laws *live)
         for (int p = 0; live->law[slot] && p < LAW_PARAMETERS_MAX && live->law[slot]->parameters[p]; p++)
             count++;
     return count > 0 ? count : 1;
+}
+
+int live_grain_constant_count(const live_laws *live)
+{
+    int count = 0;
+    for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
+        for (int p = 0; live->law[slot] && p < LAW_PARAMETERS_MAX && live->law[slot]->grain_parameters[p]; p++)
+            count++;
+    return count > 0 ? count : 1;
+}
+
+void live_grain_constants(const live_laws *live, const scene *scene, int stage, double *out)
+{
+    int width = live_grain_constant_count(live);
+    memset(out, 0, sizeof *out * (size_t)(width * scene->material_count));
+    for (int m = 0; m < scene->material_count; m++) {
+        double *row = out + m * width;
+        for (slot_id slot = 0; slot < SLOT_COUNT; slot++) {
+            const law *l = live->law[slot];
+            if (!l || !l->derive_grain)
+                continue;
+            l->derive_grain(scene, stage, m, live->option[slot], row);
+            for (int n = 0; n < LAW_PARAMETERS_MAX && l->grain_parameters[n]; n++)
+                row++;
+        }
+    }
+}
+
+/* Places of the constants of grains. */
+static void grain_places(const live_laws *live, const scene *scene, char *text, size_t size)
+{
+    int place = 0;
+    if (!live->law[SLOT_TEMPERATURE])
+        return;
+    for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
+        for (int p = 0; live->law[slot] && p < LAW_PARAMETERS_MAX && live->law[slot]->grain_parameters[p]; p++) {
+            size_t used = strlen(text);
+            snprintf(text + used, size - used, "#define %s %d\n", live->law[slot]->grain_parameters[p], place++);
+        }
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "#define GRAIN_CONSTANTS %d\n", live_grain_constant_count(live));
+    used = strlen(text);
+    if (live->law[SLOT_THERMAL_GROUPS])
+        snprintf(text + used, size - used, "#define THERMAL_GROUPS %d\n", scene->group_count);
 }
 
 void live_constants(const live_laws *live, const scene *scene, char *text, size_t size)
@@ -197,6 +281,7 @@ void live_constants(const live_laws *live, const scene *scene, char *text, size_
         used = strlen(text);
         snprintf(text + used, size - used, "#define PARTIES %d\n", scene->material_count + scene->wall_count);
     }
+    grain_places(live, scene, text, size);
 }
 
 int live_class_count(const live_laws *live, const scene *scene)

@@ -27,6 +27,9 @@ int live_constant_count(const live_laws *live);
 int live_class_count(const live_laws *live, const scene *scene);
 /* Fills rows x constants. */
 void live_class_constants(const live_laws *live, const scene *scene, int stage, double *out);
+/* Constants a material, and their rows: by material. */
+int live_grain_constant_count(const live_laws *live);
+void live_grain_constants(const live_laws *live, const scene *scene, int stage, double *out);
 bool live_uses(const live_laws *live, const field *field);
 /* True where velocities stand half a step behind the positions. */
 bool live_keeps_half_steps(const live_laws *live);

@@ -143,7 +143,7 @@ status observe_contact_sums(simulation *sim, contact_sums *out, failure *why)
 
 typedef struct record_arrays {
     int32_t *owner, *other, *id;
-    double *overlap, *radius, *force[3], *torque[3], *position; /* position: [grain][3] */
+    double *overlap, *radius, *force[3], *torque[3], *heat, *position; /* position: [grain][3]; heat: NULL without conduction */
 } record_arrays;
 
 static void free_records(record_arrays *r)
@@ -154,6 +154,7 @@ static void free_records(record_arrays *r)
     free(r->overlap);
     free(r->radius);
     free(r->position);
+    free(r->heat);
     for (int c = 0; c < 3; c++) {
         free(r->force[c]);
         free(r->torque[c]);
@@ -181,6 +182,7 @@ static status read_records(simulation *sim, record_arrays *r, failure *why)
     contact_table *t = &sim->table;
     cl_mem force = store_find(sim, "force")->mem;
     stored_field *torque = sim->live.law[SLOT_ROTATION] ? store_find(sim, "torque") : NULL;
+    stored_field *heat = sim->live.law[SLOT_CONDUCTION] ? store_find(sim, "heat") : NULL;
     memset(r, 0, sizeof *r);
     TRY(run_on_records(sim, "observe_records", why));
     TRY(read_component(sim, force, 2, &r->overlap, why));
@@ -190,6 +192,8 @@ static status read_records(simulation *sim, record_arrays *r, failure *why)
     TRY(read_ints(sim, store_find(sim, "id")->mem, sim->stride, &r->id, why));
     TRY(read_doubles(sim, store_find(sim, "radius")->mem, 0, sim->stride, &r->radius, why));
     TRY(read_doubles(sim, store_find(sim, "position")->mem, 0, 3 * sim->stride, &r->position, why));
+    if (heat)
+        TRY(read_component(sim, heat->mem, 0, &r->heat, why));
     for (int c = 0; c < 3; c++) {
         TRY(read_component(sim, force, c, &r->force[c], why));
         if (torque)
@@ -235,6 +239,7 @@ static live_contact make_contact(const simulation *sim, const record_arrays *r, 
         }
     }
     contact.area = M_PI * effective * contact.overlap;
+    contact.heat = r->heat ? sign * r->heat[k] : 0.0;
     for (int c = 0; c < 3; c++)
         contact.force[c] = sign * r->force[c][k];
     return contact;
@@ -262,7 +267,7 @@ status observe_contacts(simulation *sim, bool walls_only, live_contact **out, in
     if (result == STATUS_OK && !(*out = malloc(sizeof **out * (size_t)(records_end(sim) - first + 1))))
         result = fail(why, STATUS_ERROR, "out of memory");
     for (int64_t k = first; k < records_end(sim) && result == STATUS_OK; k++)
-        if (r.overlap[k] > 0.0)
+        if (r.overlap[k] > 0.0 || (r.heat && r.heat[k] != 0.0)) /* held grains conduct and do not press */
             (*out)[(*count)++] = make_contact(sim, &r, k);
     if (result == STATUS_OK)
         qsort(*out, (size_t)*count, sizeof **out, by_ids);

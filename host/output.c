@@ -18,7 +18,7 @@ struct output {
     results_observable *observable;
     char (*wall_name)[160];
     double *value;
-    bool wants_sums, wants_contacts, wants_stress;
+    bool wants_sums, wants_contacts, wants_stress, wants_heat;
     double *mass, *radius;
     int32_t *id, *material, *group;
 };
@@ -74,12 +74,22 @@ static status list_fields(output *o, failure *why)
     return STATUS_OK;
 }
 
+static bool is_of_heat(const char *name)
+{
+    return strncmp(name, "temperature_", 12) == 0 || strcmp(name, "thermal_energy") == 0 || strncmp(name, "heat_", 5) == 0;
+}
+
+static bool wall_heat_is_written(const simulation *sim)
+{
+    return sim->all.law[SLOT_CONDUCTION] != NULL;
+}
+
 static status list_observables(output *o, failure *why)
 {
     static const char *const of_contacts[] = {"elastic_energy", "overlap_max", "coordination_number", "contacts"};
     const scene *scene = o->sim->scene;
-    o->observable = calloc((size_t)(scene->output.observable_count + 2 * scene->wall_count + 1), sizeof *o->observable);
-    o->wall_name = calloc((size_t)(2 * scene->wall_count + 1), sizeof *o->wall_name);
+    o->observable = calloc((size_t)(scene->output.observable_count + 3 * scene->wall_count + 1), sizeof *o->observable);
+    o->wall_name = calloc((size_t)(3 * scene->wall_count + 1), sizeof *o->wall_name);
     if (!o->observable || !o->wall_name)
         return fail(why, STATUS_ERROR, "out of memory");
     for (int k = 0; k < scene->output.observable_count; k++) {
@@ -87,6 +97,7 @@ static status list_observables(output *o, failure *why)
         o->observable[o->observable_count++] = (results_observable){name->name, name->unit, name->components};
         o->value_count += name->components;
         o->wants_stress = o->wants_stress || strcmp(name->name, "stress") == 0;
+        o->wants_heat = o->wants_heat || is_of_heat(name->name);
         for (size_t c = 0; c < sizeof of_contacts / sizeof *of_contacts; c++)
             o->wants_contacts = o->wants_contacts || strcmp(name->name, of_contacts[c]) == 0;
     }
@@ -97,6 +108,12 @@ static status list_observables(output *o, failure *why)
             o->observable[o->observable_count++] = (results_observable){name, q ? "N m" : "N", 3};
             o->value_count += 3;
         }
+    for (int w = 0; wall_heat_is_written(o->sim) && w < scene->wall_count; w++) {
+        char *name = o->wall_name[2 * scene->wall_count + w];
+        snprintf(name, sizeof o->wall_name[0], "walls/%s/heat", scene->wall[w].name);
+        o->observable[o->observable_count++] = (results_observable){name, "W", 1};
+        o->value_count++;
+    }
     o->value = calloc((size_t)o->value_count + 1, sizeof *o->value);
     return o->value ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
 }
@@ -168,7 +185,7 @@ static status frame_contacts(output *o, results_contacts *c, void **columns, fai
     columns[0] = live;
     size_t n = (size_t)count + 1;
     int32_t *ids = columns[1] = malloc(3 * n * sizeof *ids);
-    double *reals = columns[2] = malloc(5 * n * sizeof *reals);
+    double *reals = columns[2] = malloc(6 * n * sizeof *reals);
     if (!ids || !reals)
         return fail(why, STATUS_ERROR, "out of memory");
     for (int64_t k = 0; k < count; k++) {
@@ -178,6 +195,7 @@ static status frame_contacts(output *o, results_contacts *c, void **columns, fai
         reals[k] = live[k].overlap;
         reals[(int64_t)n + k] = live[k].area;
         memcpy(reals + 2 * n + 3 * k, live[k].force, sizeof live[k].force);
+        reals[5 * (int64_t)n + k] = live[k].heat;
     }
     *c = (results_contacts){.count = count,
                             .i = ids,
@@ -185,7 +203,8 @@ static status frame_contacts(output *o, results_contacts *c, void **columns, fai
                             .wall = ids + 2 * n,
                             .overlap = reals,
                             .area = reals + n,
-                            .force = (const double(*)[3])(reals + 2 * n)};
+                            .force = (const double(*)[3])(reals + 2 * n),
+                            .heat = reals + 5 * n};
     return STATUS_OK;
 }
 
@@ -216,6 +235,7 @@ typedef struct measured {
     particle_sums grains;
     contact_sums contacts;
     double stress[9];
+    heat_sums heat;
 } measured;
 
 static double bed_volume(const simulation *sim)
@@ -243,7 +263,15 @@ static int put_observable(const output *o, const char *name, const measured *m, 
                    {"contacts", (double)m->contacts.contacts},
                    {"rebuilds", (double)sim->rebuilds},
                    {"left_count", (double)sim->left_count},
-                   {"left_mass", sim->left_mass}};
+                   {"left_mass", sim->left_mass},
+                   {"thermal_energy", m->heat.content},
+                   {"temperature_min", m->heat.lowest},
+                   {"temperature_mean", m->heat.mean},
+                   {"temperature_max", m->heat.highest},
+                   {"heat_sources", m->heat.tally[CLAST_TALLY_SOURCES]},
+                   {"heat_convection", m->heat.tally[CLAST_TALLY_CONVECTION]},
+                   {"heat_radiation", m->heat.tally[CLAST_TALLY_RADIATION]},
+                   {"heat_walls", m->heat.tally[CLAST_TALLY_WALLS]}};
     for (size_t s = 0; s < sizeof scalars / sizeof *scalars; s++)
         if (strcmp(scalars[s].name, name) == 0) {
             *to = scalars[s].value;
@@ -258,20 +286,24 @@ static int put_observable(const output *o, const char *name, const measured *m, 
     return 3;
 }
 
-/* Force and torque on every wall: the opposite of what it does to its grains, in the order of their ids. */
+/* Force and torque on every wall: the opposite of what it does to its grains, in the order of their ids; behind them the heat that it gives. */
 static status put_walls(output *o, double *to, failure *why)
 {
     live_contact *live = NULL;
     int64_t count;
     if (o->sim->scene->wall_count == 0)
         return STATUS_OK;
-    memset(to, 0, sizeof *to * 6 * (size_t)o->sim->scene->wall_count);
+    double *heat = wall_heat_is_written(o->sim) ? to + 6 * o->sim->scene->wall_count : NULL;
+    memset(to, 0, sizeof *to * (heat ? 7 : 6) * (size_t)o->sim->scene->wall_count);
     status result = observe_contacts(o->sim, true, &live, &count, why);
-    for (int64_t k = 0; k < count && result == STATUS_OK; k++)
+    for (int64_t k = 0; k < count && result == STATUS_OK; k++) {
+        if (heat)
+            heat[live[k].wall] += live[k].heat;
         for (int c = 0; c < 3; c++) {
             to[6 * live[k].wall + c] -= live[k].force[c];
             to[6 * live[k].wall + 3 + c] += live[k].torque_wall[c];
         }
+    }
     free(live);
     return result;
 }
@@ -287,6 +319,8 @@ status output_observe(output *o, failure *why)
         TRY(observe_contact_sums(o->sim, &m.contacts, why));
     if (o->wants_stress)
         TRY(observe_virial(o->sim, m.stress, why));
+    if (o->wants_heat)
+        TRY(heat_observe(o->sim, &m.heat, why));
     double *to = o->value;
     for (int k = 0; k < o->sim->scene->output.observable_count; k++)
         to += put_observable(o, o->observable[k].name, &m, to);

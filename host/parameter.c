@@ -166,6 +166,10 @@ static status store_default(reader *r, const parameter *row, void *target)
         break;
     case PARAMETER_SECTION:
         return parameter_section(r, row->section, 0, store);
+    case PARAMETER_OTHER:
+        if (isnan(row->absent))
+            memcpy(store, &row->absent, sizeof row->absent);
+        break;
     default:
         break;
     }

@@ -45,7 +45,7 @@ typedef struct parameter {
     const char *fallback; /* default as text; NULL: NAN, -1, empty */
     const char *shown;    /* default for the reference, where it is not `fallback` */
     const char *word;     /* accepted instead of a number and stored like an absent one ("auto") */
-    double absent;        /* what an integer stores then */
+    double absent;        /* what an integer stores then; NAN: so does a double of PARAMETER_OTHER */
     const char *choices;  /* "a|b|c" */
     const char *later;    /* choices of the interface that this version lacks */
     int first;            /* enum value of the first choice */

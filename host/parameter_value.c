@@ -11,7 +11,9 @@ static const struct {
     const char *suffix, *unit;
 } units[] = {
     {"_kg_m3", "kg/m^3"}, {"_j_kgk", "J/(kg K)"},
-    {"_rad_s", "rad/s"},  {"_w_mk", "W/(m K)"},
+    {"_rad_s", "rad/s"},  {"_w_m2k", "W/(m^2 K)"},
+    {"_w_m3", "W/m^3"},   {"_w_mk", "W/(m K)"},
+    {"_pa_s", "Pa s"},
     {"_m_s2", "m/s^2"},   {"_m_s", "m/s"},
     {"_n_m", "N/m"},      {"_rad", "rad"},
     {"_pa", "Pa"},        {"_hz", "Hz"},

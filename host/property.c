@@ -10,6 +10,18 @@ const property property_poissons_ratio = {"poissons_ratio", -1, 0.5, true, NAN, 
 const property property_conductivity = {"conductivity_w_mk", 0, 1e6, false, NAN, NULL, "thermal conductivity"};
 const property property_specific_heat = {"specific_heat_j_kgk", 0, 1e9, true, NAN, NULL, "specific heat"};
 
+const property property_film_thickness = {"film_thickness_m", 0, 1, false, 0, NULL, "thickness of a film on the surface, which resists conduction"};
+const property property_film_conductivity = {"film_conductivity_w_mk", 0, 1e6, true, 1, NULL, "thermal conductivity of that film"};
+const property property_real_modulus = {"real_modulus_pa", 0, 1e15, true, NAN, NULL,
+                                        "Young's modulus of the real material, where `youngs_modulus_pa` is softer; for `soft_modulus`"};
+const property property_emissivity = {"emissivity", 0, 1, false, NAN, NULL, "emissivity of the surface"};
+const property property_heat_generation = {"heat_generation_w_m3", 0, 1e15, false, NAN, NULL, "heat made in each volume of the grains"};
+
+const property property_gas_conductivity = {"conductivity_w_mk", 0, 1e6, true, NAN, NULL, "thermal conductivity of the gas"};
+const property property_gas_specific_heat = {"specific_heat_j_kgk", 0, 1e9, true, NAN, NULL, "specific heat of the gas"};
+const property property_gas_viscosity = {"viscosity_pa_s", 0, 1e6, true, NAN, NULL, "dynamic viscosity of the gas"};
+const property property_gas_density = {"density_kg_m3", 0, 1e6, true, NAN, NULL, "density of the gas"};
+
 const property property_restitution = {"restitution", 0, 1, true, NAN, NULL,
                                        "coefficient of restitution; gives the normal damping ratio where that is absent"};
 const property property_normal_damping = {"normal_damping_ratio", 0, 100, false, NAN, NULL, "normal damping, ratio to critical"};

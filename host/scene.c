@@ -123,6 +123,12 @@ double scene_material(const scene *s, int m, const property *wanted)
     return wanted->fallback;
 }
 
+double scene_gas(const scene *s, const property *wanted)
+{
+    int index = property_index(gas_properties(), wanted);
+    return s->environment.gas && index >= 0 ? s->environment.gas[index] : NAN;
+}
+
 const effect *scene_effect(const scene *s, int stage, slot_id slot)
 {
     if (stage >= 0 && s->stage[stage].slot_off[slot])
@@ -174,6 +180,7 @@ static void free_group(particle_group *group)
     free(group->radius_m.mass_fraction);
     free(group->item);
     free(group->path);
+    quantity_free(&group->temperature);
     free_motion(&group->motion);
 }
 
@@ -182,6 +189,7 @@ static void free_stage(scene_stage *stage)
     free(stage->name);
     for (int k = 0; k < stage->wall_change_count; k++) {
         free_motion(&stage->wall_change[k].motion);
+        quantity_free(&stage->wall_change[k].heat.temperature_k);
         free(stage->wall_change[k].value);
     }
     free(stage->wall_change);
@@ -206,10 +214,14 @@ void scene_free(scene *s)
     for (int k = 0; k < s->wall_count; k++) {
         free(s->wall[k].name);
         free_motion(&s->wall[k].motion);
+        quantity_free(&s->wall[k].heat.temperature_k);
     }
     for (int k = 0; k < s->stage_count; k++)
         free_stage(&s->stage[k]);
     free_interactions(s->interaction, s->interaction_count);
+    quantity_free(&s->environment.temperature_k);
+    quantity_free(&s->environment.gas_velocity_m_s);
+    free(s->environment.gas);
     free(s->effect);
     free(s->material);
     free(s->group);

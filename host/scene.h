@@ -40,6 +40,44 @@ typedef struct interaction {
     place at;
 } interaction;
 
+/* A value that may vary: linear between the places of a table, constant outside. */
+#define QUANTITY_PLACES_MAX 64 /* of a table along an axis: kernels look it up */
+typedef enum quantity_kind { QUANTITY_NUMBER, QUANTITY_TIME, QUANTITY_AXIS } quantity_kind;
+typedef struct quantity {
+    bool given;
+    quantity_kind kind;
+    int components; /* 1 or 3 */
+    double number[3];
+    int axis, count;
+    double *at;    /* s or m, rising */
+    double *value; /* [count][components] */
+} quantity;
+
+/* Value at a time or a place; NAN where the quantity is not given. */
+double quantity_at(const quantity *q, double x);
+double quantity_component(const quantity *q, double x, int component);
+bool quantity_varies_in_time(const quantity *q);
+double quantity_largest(const quantity *q);
+void quantity_free(quantity *q);
+
+/* What surrounds the bed. */
+typedef struct environment {
+    quantity temperature_k, gas_velocity_m_s;
+    double *gas; /* by index into gas_properties(), or NULL */
+} environment;
+
+typedef enum thermal_kind { THERMAL_FREE, THERMAL_PRESCRIBED, THERMAL_FLUX } thermal_kind;
+
+/* What a wall's entry, or a change of it, says about heat. */
+typedef struct wall_heat {
+    bool adiabatic; /* written out */
+    int word;
+    quantity temperature_k;
+    double flux_w; /* NAN: not given */
+} wall_heat;
+typedef enum wall_heat_kind { WALL_HEAT_ADIABATIC, WALL_HEAT_TEMPERATURE, WALL_HEAT_FLUX } wall_heat_kind;
+wall_heat_kind wall_heat_kind_of(const wall_heat *heat);
+
 typedef enum motion_type { MOTION_CONSTANT, MOTION_SINUSOID, MOTION_ROTATION, MOTION_TABLE } motion_type;
 
 /* One term; the terms of a list add up. */
@@ -85,7 +123,10 @@ typedef struct particle_group {
     radius_spec radius_m;
     bool region_given;
     double region_low_m[3], region_high_m[3];
-    double velocity_m_s[3], spin_rad_s[3], temperature_k;
+    double velocity_m_s[3], spin_rad_s[3], temperature_k; /* temperature at the start, NAN where absent */
+    quantity temperature;  /* the same as written: a prescribed one may be a table in time */
+    thermal_kind thermal;
+    double heat_flux_w;    /* into each particle; NAN where absent */
     int item_count;
     particle_item *item;
     lattice lattice;
@@ -109,6 +150,7 @@ typedef struct wall {
     double corners_m[3][3];            /* rectangle: a corner and its two neighbours */
     double center_m[3], radius_m;      /* disc */
     motion_list motion;
+    wall_heat heat;
     place at;
 } wall;
 
@@ -117,6 +159,7 @@ typedef struct wall_change {
     int wall;
     bool motion_given;
     motion_list motion;
+    wall_heat heat;
     double *value; /* interaction properties between every material and this wall; NAN: unchanged */
 } wall_change;
 
@@ -175,6 +218,7 @@ typedef struct scene {
     precision precision;
     integrator integrator;
     domain domain;
+    environment environment;
     int effect_count;
     effect *effect;
     int material_count;
@@ -215,6 +259,17 @@ const effect *scene_effect(const scene *scene, int stage, slot_id slot);
 
 /* Gravity in a stage (-1: the scene's own): changes stay in force until the next one. */
 void scene_gravity(const scene *scene, int stage, double gravity_m_s2[3]);
+
+/* A thermal law is listed; grains have a temperature; what each path of heat brings is kept. */
+bool scene_has_heat(const scene *scene);
+bool scene_has_temperature(const scene *scene);
+bool scene_tallies_heat(const scene *scene);
+/* A field or an observable is listed under `output`. */
+bool scene_outputs(const scene *scene, const char *name);
+/* What a wall's heat is in a stage (-1: at the start). */
+const wall_heat *scene_wall_heat(const scene *scene, int stage, int wall);
+/* A property of the environment's gas; NAN where absent. */
+double scene_gas(const scene *scene, const property *property);
 
 /* The scene reference page, made from the parameter table and the law descriptors, as Markdown. Caller frees. */
 char *scene_reference(void);

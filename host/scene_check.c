@@ -94,6 +94,7 @@ static status check_changes_once(reader *r)
         for (int k = 0; k < stage->wall_change_count; k++) {
             int node = document_at(r->document, "stages[%d].change.walls[%d]", t, k);
             TRY(finish_interaction(r, node, NULL));
+            TRY(check_wall_heat(r, node, &stage->wall_change[k].heat));
             for (int j = 0; j < k; j++)
                 if (stage->wall_change[j].wall == stage->wall_change[k].wall)
                     return document_fail(r->document, node, r->why, "the wall `%s` is changed twice in this stage; put both into one entry",
@@ -333,5 +334,6 @@ status scene_check(reader *r)
     TRY(check_normal_present(r));
     TRY(check_needs(r));
     TRY(check_output(r));
+    TRY(scene_check_heat(r));
     return check_planar(r);
 }

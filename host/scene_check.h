@@ -4,5 +4,7 @@
 #include "parameter.h"
 
 status scene_check(reader *r);
+status scene_check_heat(reader *r);
+status check_wall_heat(reader *r, int node, const wall_heat *heat);
 
 #endif

@@ -130,6 +130,8 @@ static void write_law(FILE *page, const law *l)
         const law_option *option = &l->options[k];
         char shown[64];
         snprintf(shown, sizeof shown, "`%.10g`", option->fallback);
+        if (!option->choices && isnan(option->fallback))
+            snprintf(shown, sizeof shown, "required");
         if (option->choices)
             snprintf(shown, sizeof shown, "`%.*s`", (int)strcspn(option->choices, "|"), option->choices);
         const parameter row = {.key = option->key,
@@ -164,6 +166,9 @@ static void write_page(FILE *page)
           page);
     write_section(page, "Scene", &scene_section);
     write_section(page, "`domain`", &domain_section);
+    write_section(page, "`environment`", &environment_section);
+    write_section(page, "`gas`", &gas_section);
+    write_section(page, "Values that are tables", &quantity_section);
     write_section(page, "`effects`", &effect_section);
     for (const law *const *l = laws; *l; l++)
         write_law(page, *l);

@@ -23,6 +23,23 @@ const section domain_section = {.name = "domain", .doc = "The box that holds the
                                 .row = domain_rows,
                                 .finish = finish_domain};
 
+static const parameter gas_rows[] = {
+    {.key = "velocity_m_s", .type = PARAMETER_OTHER, .read = read_vector_anywhere, .unit = "m/s", AT(environment, gas_velocity_m_s),
+     .form = "[x, y, z], or table", .shown = "`[0, 0, 0]`", .doc = "velocity, a vector or a table of vectors in time or along an axis"},
+    {0},
+};
+const section gas_section = {.name = "gas", .doc = "The gas around the particles. It heats and cools, and does not drag.", .row = gas_rows,
+                             .properties = gas_properties, .values = offsetof(environment, gas)};
+
+static const parameter environment_rows[] = {
+    {.key = "temperature_k", .type = PARAMETER_OTHER, .read = read_number_anywhere, .unit = "K", POSITIVE, AT(environment, temperature_k),
+     .form = "number, or table", .shown = "none", .doc = "temperature, a number or a table in time or along an axis"},
+    {.key = "gas", .type = PARAMETER_SECTION, .section = &gas_section, .offset = 0, .shown = "none", .doc = "the gas"},
+    {0},
+};
+const section environment_section = {.name = "environment", .doc = "What surrounds the particles, for convection and radiation.",
+                                     .row = environment_rows};
+
 /* For the reference alone: read_effects makes its own rows, which hold the law's options too. */
 static const parameter effect_rows[] = {
     {.key = "slot", .type = PARAMETER_OTHER, .form = "name of a slot", .required = true, .doc = "the slot that the law fills"},
@@ -74,7 +91,7 @@ static const parameter item_rows[] = {
      .doc = "velocity"},
     {.key = "spin_rad_s", .type = PARAMETER_VECTOR, .unit = "rad/s", .keep = true, .shown = "the group's", AT(particle_item, spin_rad_s),
      .doc = "angular velocity"},
-    {.key = "temperature_k", .type = PARAMETER_NUMBER, .unit = "K", NOT_NEGATIVE, .keep = true, .shown = "the group's",
+    {.key = "temperature_k", .type = PARAMETER_NUMBER, .unit = "K", POSITIVE, .keep = true, .shown = "the group's",
      AT(particle_item, temperature_k), .doc = "temperature"},
     {0},
 };
@@ -118,8 +135,14 @@ static const parameter group_rows[] = {
      .doc = "velocity at the start, where the generator gives none"},
     {.key = "spin_rad_s", .type = PARAMETER_VECTOR, .unit = "rad/s", .fallback = "[0, 0, 0]", AT(particle_group, spin_rad_s),
      .doc = "angular velocity at the start, where the generator gives none"},
-    {.key = "temperature_k", .type = PARAMETER_NUMBER, .unit = "K", NOT_NEGATIVE, AT(particle_group, temperature_k),
-     .doc = "temperature at the start, where the generator gives none"},
+    {.key = "temperature_k", .type = PARAMETER_OTHER, .read = read_group_temperature, .unit = "K", POSITIVE, AT(particle_group, temperature_k),
+     .absent = NAN, .form = "number, or table in time", .shown = "none",
+     .doc = "temperature at the start, where the generator gives none; with `thermal: prescribed` the temperature, which may be a table in "
+            "time"},
+    {.key = "thermal", .type = PARAMETER_CHOICE, .choices = "free|prescribed|flux", .fallback = "free", AT(particle_group, thermal),
+     .doc = "the temperature is free; or it is as `temperature_k` prescribes; or it is free and `heat_flux_w` heats"},
+    {.key = "heat_flux_w", .type = PARAMETER_NUMBER, .unit = "W", AT(particle_group, heat_flux_w),
+     .doc = "with `thermal: flux`: heat into each particle"},
     {.key = "items", .type = PARAMETER_OTHER, .read = read_items, .required = true, .only = "list", .form = "list of particle items",
      .doc = "the particles"},
     {.key = "count", .type = PARAMETER_INTEGER, .required = true, .low = 0, .high = 2e9, .only = "random", AT(particle_group, count),
@@ -205,6 +228,12 @@ static const parameter wall_rows[] = {
      .doc = "radius"},
     {.key = "motion", .type = PARAMETER_OTHER, .read = read_motion, .shown = "[]", AT(wall, motion), .form = "list of motion terms",
      .doc = "prescribed motion; the terms add up"},
+    {.key = "heat", .type = PARAMETER_CHOICE, .choices = "adiabatic", .shown = "adiabatic", AT(wall, heat.word),
+     .given = offsetof(wall, heat.adiabatic), .doc = "no heat passes"},
+    {.key = "temperature_k", .type = PARAMETER_OTHER, .read = read_number_in_time, .unit = "K", POSITIVE, AT(wall, heat.temperature_k),
+     .form = "number, or table in time", .shown = "none", .doc = "prescribed temperature"},
+    {.key = "heat_flux_w", .type = PARAMETER_NUMBER, .unit = "W", AT(wall, heat.flux_w), .shown = "none",
+     .doc = "heat into the particles that touch the wall, shared among them by area of contact; none flows while none touches"},
     {.key = "servo", .type = PARAMETER_LATER, .doc = "a wall that moves to keep a force"},
     {0},
 };
@@ -231,6 +260,12 @@ static const parameter wall_change_rows[] = {
      .doc = "the wall that changes"},
     {.key = "motion", .type = PARAMETER_OTHER, .read = read_motion, AT(wall_change, motion), .given = offsetof(wall_change, motion_given),
      .shown = "unchanged", .form = "list of motion terms", .doc = "its motion from now on; `[]` stops it"},
+    {.key = "heat", .type = PARAMETER_CHOICE, .choices = "adiabatic", .shown = "unchanged", AT(wall_change, heat.word),
+     .given = offsetof(wall_change, heat.adiabatic), .doc = "no heat passes"},
+    {.key = "temperature_k", .type = PARAMETER_OTHER, .read = read_number_in_time, .unit = "K", POSITIVE, AT(wall_change, heat.temperature_k),
+     .form = "number, or table in time", .shown = "unchanged", .doc = "prescribed temperature"},
+    {.key = "heat_flux_w", .type = PARAMETER_NUMBER, .unit = "W", AT(wall_change, heat.flux_w), .shown = "unchanged",
+     .doc = "heat into the particles that touch the wall, shared among them by area of contact; none flows while none touches"},
     {0},
 };
 const section wall_change_section = {.name = "wall change",
@@ -338,6 +373,8 @@ static const parameter scene_rows[] = {
      .fallback = "semi_implicit_euler", AT(scene, integrator), .doc = "how time advances"},
     {.key = "domain", .type = PARAMETER_SECTION, .section = &domain_section, AT(scene, domain), .given = offsetof(scene, domain.given),
      .shown = "unbounded", .doc = "the box that holds the particles"},
+    {.key = "environment", .type = PARAMETER_SECTION, .section = &environment_section, AT(scene, environment), .shown = "none",
+     .doc = "what surrounds the particles"},
     {.key = "effects", .type = PARAMETER_OTHER, .read = read_effects, .section = &effect_section, .shown = "[]", .form = "list of effects",
      .doc = "the live laws"},
     {.key = "materials", .type = PARAMETER_LIST, .section = &material_section, .size = sizeof(material), .required = true,

@@ -5,7 +5,7 @@
 
 extern const section scene_section, domain_section, effect_section, material_section, interaction_section, group_section, region_section,
     item_section, radius_section, wall_section, motion_section, stage_section, until_section, change_section, wall_change_section,
-    group_change_section, output_section, table_section, guard_section, study_section;
+    group_change_section, output_section, table_section, guard_section, study_section, environment_section, gas_section, quantity_section;
 
 /* A per-particle field or an observable that `output:` may list. */
 typedef struct output_name {
@@ -33,6 +33,11 @@ status read_file(reader *r, const parameter *row, int node, void *target);
 status read_motion(reader *r, const parameter *row, int node, void *target);
 status read_group_motion(reader *r, const parameter *row, int node, void *target);
 status read_changed_motion(reader *r, const parameter *row, int node, void *target);
+status read_group_temperature(reader *r, const parameter *row, int node, void *target);
+/* host/scene_quantity.c: a number, or a table in time, or also along an axis. */
+status read_number_in_time(reader *r, const parameter *row, int node, void *target);
+status read_number_anywhere(reader *r, const parameter *row, int node, void *target);
+status read_vector_anywhere(reader *r, const parameter *row, int node, void *target);
 status read_table_velocity(reader *r, const parameter *row, int node, void *target);
 
 /* Checks over several keys of one section. */

@@ -1,5 +1,6 @@
 /* Values of a scene that no plain type covers, and checks over several keys of one mapping. */
 #include "property.h"
+#include "scene_check.h"
 #include "scene_table.h"
 
 #include <math.h>
@@ -191,6 +192,7 @@ static status read_effect(reader *r, int node, effect *out)
                                   .high = option->high,
                                   .choices = option->choices,
                                   .as_number = true,
+                                  .required = !option->choices && isnan(option->fallback),
                                   .doc = option->doc,
                                   .fallback = option->choices ? NULL : fallback[k],
                                   .unit = parameter_unit(option->key),
@@ -302,6 +304,17 @@ status read_items(reader *r, const parameter *row, int node, void *target)
     return STATUS_OK;
 }
 
+/* A number, or the table of a prescribed temperature, from whose start grains start. */
+status read_group_temperature(reader *r, const parameter *row, int node, void *target)
+{
+    particle_group *group = target;
+    parameter whole = *row;
+    whole.offset = offsetof(particle_group, temperature);
+    TRY(read_number_in_time(r, &whole, node, target));
+    group->temperature_k = quantity_at(&group->temperature, 0.0);
+    return STATUS_OK;
+}
+
 /* A relative path starts at the scene's folder. */
 status read_file(reader *r, const parameter *row, int node, void *target)
 {
@@ -364,6 +377,7 @@ status finish_wall(reader *r, int node, void *target)
 {
     wall *w = target;
     bool planar = r->scene->dimensions == 2;
+    TRY(check_wall_heat(r, node, &w->heat));
     if (w->shape == WALL_RECTANGLE)
         return check_rectangle(r, node, w);
     if (w->shape == WALL_BOX) {

@@ -89,6 +89,7 @@ static status upload_bed(simulation *sim, const bed *bed, failure *why)
     if (store_find(sim, "spin"))
         TRY(upload_vectors(sim, "spin", (const double(*)[3])bed->spin, bed->count, why));
     TRY(upload_scalars(sim, bed, why));
+    TRY(heat_upload_bed(sim, bed, why));
     stored_field *orientation = store_find(sim, "orientation");
     if (!orientation)
         return STATUS_OK;
@@ -117,13 +118,25 @@ static status create_bodies(simulation *sim, failure *why)
     return STATUS_OK;
 }
 
+static uint64_t widest_field(const simulation *sim)
+{
+    uint64_t widest = 0;
+    for (int f = 0; f < sim->field_count; f++) {
+        uint64_t bytes = field_bytes(sim, sim->field[f].field);
+        if (sim->field[f].field->extent == PER_PARTICLE && bytes > widest)
+            widest = bytes;
+    }
+    return widest;
+}
+
 static status create_buffers(simulation *sim, failure *why)
 {
     TRY(store_fields(sim, why));
     TRY(store_buffer(sim, &sim->built_position, field_bytes(sim, &field_position), "positions at the last table", why));
     TRY(store_fill(sim, sim->built_position, field_bytes(sim, &field_position), why));
-    if (store_find(sim, "orientation"))
-        TRY(store_buffer(sim, &sim->scratch4, field_bytes(sim, &field_orientation), "sorting", why));
+    uint64_t widest = widest_field(sim);
+    if (widest > field_bytes(sim, &field_position))
+        TRY(store_buffer(sim, &sim->scratch4, widest, "sorting", why));
     if (live_keeps_half_steps(&sim->all)) {
         TRY(store_buffer(sim, &sim->velocity_now, field_bytes(sim, &field_velocity), "synchronised velocities", why));
         TRY(store_buffer(sim, &sim->spin_now, store_find(sim, "spin") ? field_bytes(sim, &field_spin) : 0, "synchronised spins", why));
@@ -132,6 +145,7 @@ static status create_buffers(simulation *sim, failure *why)
     TRY(store_buffer(sim, &sim->control, sizeof(clast_control), "control words", why));
     int width = live_constant_count(&sim->all);
     TRY(store_buffer(sim, &sim->constants, 8 * (uint64_t)(width * live_class_count(&sim->all, sim->scene)), "contact constants", why));
+    TRY(heat_create(sim, why));
     return table_create(sim, why);
 }
 
@@ -172,6 +186,7 @@ void simulation_free(simulation *sim)
         clFinish(sim->device->queue);
     launch_close(sim);
     table_free(sim);
+    heat_free(sim);
     for (int f = 0; f < sim->field_count; f++)
         store_release(sim, &sim->field[f].mem, 0);
     cl_mem *const rest[] = {&sim->where, &sim->partial, &sim->control, &sim->faces, &sim->movers, &sim->constants, &sim->built_position, &sim->scratch4,
@@ -193,7 +208,7 @@ void simulation_free(simulation *sim)
 /* Rows for the steps of a batch: walls where they are at the start of each step, prescribed motions over it. What stands still has one. */
 static status fit_rows(simulation *sim, failure *why)
 {
-    int rows = sim->walls_move || sim->groups_move ? (int)sim->batch_limit : 1;
+    int rows = sim->walls_move || sim->groups_move || sim->heat.vary ? (int)sim->batch_limit : 1;
     if (rows <= sim->batch_rows)
         return STATUS_OK;
     uint64_t faces = sizeof(clast_face) * (uint64_t)(sim->face_count * rows), movers = sizeof(clast_mover) * (uint64_t)(sim->mover_count * rows);
@@ -212,7 +227,7 @@ static status fit_rows(simulation *sim, failure *why)
     if (sim->mover_count > 0)
         TRY(store_buffer(sim, &sim->movers, movers, "prescribed motions", why));
     sim->batch_rows = rows;
-    return STATUS_OK;
+    return heat_fit_rows(sim, rows, why);
 }
 
 /* Time after so many more steps, to the same bits whatever the batches. */
@@ -233,12 +248,13 @@ static status write_rows(simulation *sim, int rows, failure *why)
         }
         for (int g = 0; g < sim->mover_count; g++)
             sim->mover_rows[row * sim->mover_count + g] = moving_body_step(&sim->group_body[g], time, sim->dt);
+        heat_fill_row(sim, row, time);
     }
     if (sim->face_count > 0)
         TRY(store_write(sim, sim->faces, 0, sizeof(clast_face) * (uint64_t)(sim->face_count * rows), sim->face_rows, why));
     if (sim->mover_count > 0)
         TRY(store_write(sim, sim->movers, 0, sizeof(clast_mover) * (uint64_t)(sim->mover_count * rows), sim->mover_rows, why));
-    return STATUS_OK;
+    return heat_write_rows(sim, rows, why);
 }
 
 status simulation_pose_now(simulation *sim, failure *why)
@@ -349,6 +365,7 @@ static void note_movers(simulation *sim)
         sim->walls_move = sim->walls_move || moving_body_moves(&sim->wall_body[w]);
     for (int g = 0; g < sim->mover_count; g++)
         sim->groups_move = sim->groups_move || moving_body_moves(&sim->group_body[g]);
+    sim->heat.vary = heat_varies(sim);
     sim->batch_rows = 0;
 }
 
@@ -389,6 +406,7 @@ status simulation_enter_stage(simulation *sim, int stage, failure *why)
     TRY(forget_histories(sim, why));
     note_movers(sim);
     TRY(upload_constants(sim, stage, why));
+    TRY(heat_upload_constants(sim, stage, why));
     TRY(simulation_pose_now(sim, why));
     return table_build(sim, false, why);
 }
@@ -510,6 +528,7 @@ static status enqueue_batch(simulation *sim, int steps, failure *why)
         launch.kick = halves ? 0.5 * (launch.lag + sim->dt) : sim->dt;
         launch.face_row = sim->walls_move ? s : 0;
         launch.mover_row = sim->groups_move ? s : 0;
+        launch.heat_row = sim->heat.vary ? s : 0;
         for (int c = 0; c < 3; c++)
             launch.drift[c] = sim->drift_velocity[c] * since;
         TRY_CL(clSetKernelArg(pair, 0, sizeof launch, &launch), "pair_stage");
@@ -535,7 +554,7 @@ static int steps_before_walls(const simulation *sim, int steps)
 static status run_batch(simulation *sim, int steps, int *done, bool *rebuild, failure *why)
 {
     clast_control control = {steps, 0, {0, 0}};
-    if (sim->walls_move || sim->groups_move)
+    if (sim->walls_move || sim->groups_move || sim->heat.vary)
         TRY(write_rows(sim, steps, why));
     TRY(store_write(sim, sim->control, 0, sizeof control, &control, why));
     TRY(enqueue_batch(sim, steps, why));

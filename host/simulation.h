@@ -11,7 +11,7 @@
 #include <clast/shared.h>
 
 #define SIMULATION_FIELDS_MAX 32
-#define SIMULATION_KERNELS_MAX 40
+#define SIMULATION_KERNELS_MAX 48
 #define BATCH_STEPS_MAX 1024
 
 /* One array on the device. */
@@ -46,13 +46,29 @@ typedef struct contact_table {
     bool built;
 } contact_table;
 
+/* Steps up to which no temperature leaves the interval of those around it, by what draws it. */
+typedef struct heat_limit {
+    double conduction, convection, radiation, all;
+} heat_limit;
+
 typedef struct step_limit {
     double limit_s;       /* largest stable step; infinite where nothing binds */
     double recommended_s; /* seven tenths of the limit, and a tenth of the shortest contact */
     char binds[64];       /* "normal", "tangential and rolling", "tenth of the contact", ... */
     double contact_s;     /* duration of the shortest contact expected, 0: none */
+    heat_limit heat;
     double live_s, expected_s; /* limits from the contacts there are, and from those to be expected */
 } step_limit;
+
+/* Tables of heat on the device, and the host's copies of rows that vary from step to step. */
+typedef struct heat_tables {
+    cl_mem constants, profile, environment, walls, groups;
+    int rows;
+    bool vary;
+    clast_environment *environment_rows;
+    clast_wall_heat *wall_rows; /* by row and face */
+    clast_group_heat *group_rows;
+} heat_tables;
 
 typedef struct simulation {
     const scene *scene;
@@ -82,6 +98,7 @@ typedef struct simulation {
     clast_mover *mover_rows;
     int batch_rows;          /* rows allocated */
     uint64_t face_bytes, mover_bytes;
+    heat_tables heat;
     int32_t *group_of_id;
     bool *group_held;        /* by group: held or moved as prescribed, now */
     int64_t batch_limit;     /* steps a batch, now */
@@ -173,6 +190,7 @@ typedef struct contact_sums {
 typedef struct live_contact {
     int32_t i, j, wall; /* permanent ids; j -1 at a wall */
     double overlap, area, force[3], torque_wall[3];
+    double heat; /* into i, W */
 } live_contact;
 /* Room on the device for `doubles` results of a reduction. */
 status observe_partial(simulation *sim, int64_t doubles, failure *why);
@@ -191,6 +209,25 @@ status observe_totals(simulation *sim, bool torque, double **out, failure *why);
 status observe_virial(simulation *sim, double *stress, failure *why);
 /* Host copy of a particle field in permanent-id order, [id_count][components]; NAN (or -1) where the grain has left. Caller frees. */
 status observe_field(simulation *sim, const char *name, double **out, failure *why);
+
+/* heat.c */
+/* All do nothing in a scene without temperatures. */
+status heat_create(simulation *sim, failure *why);
+void heat_free(simulation *sim);
+status heat_upload_bed(simulation *sim, const bed *bed, failure *why);
+status heat_upload_constants(simulation *sim, int stage, failure *why);
+/* Something prescribed varies in time in the present stage. */
+bool heat_varies(const simulation *sim);
+status heat_fit_rows(simulation *sim, int rows, failure *why);
+void heat_fill_row(simulation *sim, int row, double time);
+status heat_write_rows(simulation *sim, int rows, failure *why);
+typedef struct heat_sums {
+    double content;                     /* sum of m c T, J */
+    double lowest, mean, highest;       /* K; NAN where no grain is left */
+    double tally[CLAST_TALLIES];        /* J */
+} heat_sums;
+status heat_observe(simulation *sim, heat_sums *out, failure *why);
+status heat_limit_find(simulation *sim, heat_limit *out, failure *why);
 
 /* guard.c */
 typedef struct guard_finding {

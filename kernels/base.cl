@@ -110,6 +110,8 @@ typedef struct contact {
     real arm_i, arm_j;   /* of the friction force */
     vec3 slip;           /* tangential relative velocity of the surfaces */
     vec3 spin_i, spin_j;
+    real touch;          /* overlap whether or not the two act on each other with forces, m */
+    real temperature_i, temperature_j; /* K; of a wall: that of the grain */
     real dt;             /* of the step to come */
     /* what histories advance by: motion over the step that led here (under semi-implicit Euler that of its end) */
     real elapsed;        /* its length */
@@ -133,3 +135,18 @@ typedef struct response {
 typedef struct mode {
     real stiffness, damping;
 } mode;
+
+/* A grain as the laws of its heat see it. */
+typedef struct grain {
+    vec3 position, velocity;
+    real radius, mass, temperature;
+    real surroundings; /* temperature of the environment where the grain is, K */
+    vec3 gas;          /* velocity of the gas there */
+    __global const real *value; /* constants of its material */
+} grain;
+
+/* Heat that a grain gains, by path: W, or J over a step. */
+typedef struct grain_heat {
+    real contacts; /* all of them, walls included */
+    real walls, sources, convection, radiation;
+} grain_heat;

@@ -35,7 +35,7 @@ typedef struct clast_launch {
     clast_i32 mover_row;
     clast_i32 face_count;
     clast_i32 mover_count;
-    clast_i32 spare;
+    clast_i32 heat_row;         /* row of the tables of heat for this step */
 } clast_launch;
 
 /* Written by stages that find something; the host reads it once a batch. */
@@ -79,6 +79,50 @@ typedef struct clast_mover {
     clast_f64 velocity[3];
     clast_f64 spin[3];
 } clast_mover;
+
+/* What surrounds the bed at one step. */
+typedef struct clast_environment {
+    clast_f64 temperature;     /* K */
+    clast_f64 gas_velocity[3]; /* m/s */
+} clast_environment;
+
+#define CLAST_PROFILE_MAX 64
+
+/* A table along an axis: up to three components at rising places. */
+typedef struct clast_profile {
+    clast_f64 at[CLAST_PROFILE_MAX]; /* m */
+    clast_f64 value[3][CLAST_PROFILE_MAX];
+    clast_i32 axis;
+    clast_i32 count; /* 0: no table */
+} clast_profile;
+
+#define CLAST_WALL_ADIABATIC 0
+#define CLAST_WALL_TEMPERATURE 1
+#define CLAST_WALL_FLUX 2
+
+/* The heat of a face of a wall at one step. */
+typedef struct clast_wall_heat {
+    clast_f64 temperature; /* K */
+    clast_f64 flux;        /* W into the grains that touch the wall */
+    clast_f64 quantum;     /* 1/m2: areas are summed as whole numbers of its inverse, so that their order does not matter */
+    clast_i32 kind;
+    clast_i32 wall;
+} clast_wall_heat;
+
+/* A group of grains that is heated or whose temperature is prescribed, over one step. */
+typedef struct clast_group_heat {
+    clast_f64 temperature; /* at the end of the step, K */
+    clast_f64 heat;        /* into each grain, W */
+    clast_i32 prescribed;
+    clast_i32 spare;
+} clast_group_heat;
+
+/* What is added up for each grain, J. */
+#define CLAST_TALLY_SOURCES 0
+#define CLAST_TALLY_CONVECTION 1
+#define CLAST_TALLY_RADIATION 2
+#define CLAST_TALLY_WALLS 3
+#define CLAST_TALLIES 4
 
 #define CLAST_LEVELS_MAX 12
 

@@ -6,7 +6,7 @@
     WRITE(real, force) COMPOSITION_PAIR_FIELDS(READ, WRITE) MOTION_PAIR_FIELDS(READ, WRITE) ROTATION_PAIR_FIELDS(READ, WRITE)    \
     BONDING_PAIR_FIELDS(READ, WRITE) BOND_PAIR_FIELDS(READ, WRITE) COHESION_PAIR_FIELDS(READ, WRITE)                           \
     SLIP_PAIR_FIELDS(READ, WRITE) TANGENTIAL_PAIR_FIELDS(READ, WRITE) ROLLING_PAIR_FIELDS(READ, WRITE) WALLS_PAIR_FIELDS(READ, WRITE)     \
-    INTEGRATOR_PAIR_FIELDS(READ, WRITE)
+    TEMPERATURE_PAIR_FIELDS(READ, WRITE) CONDUCTION_PAIR_FIELDS(READ, WRITE) WALL_HEAT_PAIR_FIELDS(READ, WRITE) INTEGRATOR_PAIR_FIELDS(READ, WRITE)
 #define PAIR_DECLARE PAIR_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PAIR_PASS PAIR_FIELDS(PASS, PASS)
 
@@ -46,7 +46,10 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     real overlap = sum - distance;
     c->gap = apart ? -overlap : R(1e30);
     overlap = apart && overlap > R(0.0) ? overlap : R(0.0);
+    c->touch = overlap;
     c->overlap = motion_overlap(MOTION_GRAIN(i), MOTION_GRAIN(j), overlap);
+    c->temperature_i = TEMPERATURE_OF_BODY(i);
+    c->temperature_j = TEMPERATURE_OF_BODY(j);
     c->n = scale(inverse, d);
     c->radius_eff = c->radius_i * c->radius_j * (both * mass_sum);
     c->mass_eff = c->mass_i * c->mass_j * (both * sum);
@@ -76,7 +79,9 @@ INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_
     c->class = composition_class(COMPOSITION_GRAIN(i), touch->party);
     real overlap = c->radius_i - touch->distance;
     c->gap = -overlap;
-    c->overlap = motion_overlap(MOTION_GRAIN(i), 0, overlap > R(0.0) ? overlap : R(0.0));
+    c->touch = overlap > R(0.0) ? overlap : R(0.0);
+    c->overlap = motion_overlap(MOTION_GRAIN(i), 0, c->touch);
+    c->temperature_i = c->temperature_j = TEMPERATURE_OF_BODY(i);
     c->radius_eff = c->radius_i;
     c->mass_eff = c->mass_i;
     c->arm_i = c->radius_i - LEVER_ARM_SHRINKS * c->overlap;

@@ -34,6 +34,7 @@
         response out;                                                                               \
         contact_of_grains(launch, k, &c PAIR_PASS);                                                 \
         PAIR_LAWS(keep);                                                                            \
+        CONDUCTION_STORE(launch, k, conduction_conductance(&c) * (c.temperature_j - c.temperature_i)); \
         vec3 on_other = add_scaled(scale(R(-1.0), out.rolling), c.arm_j, lever);                    \
         ROTATION_STORE_TORQUE(launch, k, on_owner, on_other);                                       \
     }
@@ -47,6 +48,7 @@
         wall_touch touch;                                                                           \
         contact_of_wall(launch, k, &c, &touch PAIR_PASS);                                           \
         PAIR_LAWS(keep);                                                                            \
+        CONDUCTION_STORE(launch, k, WALL_HEAT_FLOW(launch, other[k], &c, conduction_wall_conductance(&c))); \
         vec3 on_wall = sub(cross3(total, sub(touch.point, touch.pivot)), out.rolling);              \
         ROTATION_STORE_TORQUE(launch, k, on_owner, on_wall);                                        \
     }

@@ -2,14 +2,18 @@
 #define PARTICLE_FIELDS(READ, WRITE)                                                                                              \
     READ(uint, slot_offset) READ(int, slots) READ(real, force) READ(real, radius) READ(real, mass) WRITE(real, position) WRITE(real, velocity)     \
     READ(real, built_position) MOTION_PARTICLE_FIELDS(READ, WRITE) \
-    ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE) INTEGRATOR_PARTICLE_FIELDS(READ, WRITE)
+    ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE) TEMPERATURE_PARTICLE_FIELDS(READ, WRITE)                \
+    SUBSTANCE_PARTICLE_FIELDS(READ, WRITE) ENVIRONMENT_PARTICLE_FIELDS(READ, WRITE) CONDUCTION_PARTICLE_FIELDS(READ, WRITE)             \
+    SOURCE_PARTICLE_FIELDS(READ, WRITE) THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE)              \
+    INTEGRATOR_PARTICLE_FIELDS(READ, WRITE)
 #define PARTICLE_DECLARE PARTICLE_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PARTICLE_PASS PARTICLE_FIELDS(PASS, PASS)
 
-/* Sums force and torque over the slots of a grain; they end at the first empty one. */
-INLINE void particle_gather(const clast_launch *launch, int block, int lane, vec3 *total, vec3 *moment PARTICLE_DECLARE)
+/* Sums force, torque and heat over the slots of a grain; they end at the first empty one. */
+INLINE void particle_gather(const clast_launch *launch, int block, int lane, vec3 *total, vec3 *moment, grain_heat *h PARTICLE_DECLARE)
 {
     vec3 f = v3(R(0.0), R(0.0), R(0.0)), t = f;
+    real heat_in = R(0.0), from_walls = R(0.0);
     uint first = slot_offset[block], end = slot_offset[block + 1];
     for (uint s = first; s < end; s += CLAST_BLOCK) {
         int entry = slots[s + lane];
@@ -19,9 +23,44 @@ INLINE void particle_gather(const clast_launch *launch, int block, int lane, vec
         int k = (entry > 0 ? entry : -entry) - 1;
         f = add_scaled(f, sign, LOAD3(force, launch->record_stride, k));
         t = add(t, ROTATION_GATHER(launch, k, sign));
+        real flow = CONDUCTION_GATHER(launch, k, sign);
+        heat_in += flow;
+        from_walls += k >= launch->first_wall_group * CLAST_BLOCK ? flow : R(0.0);
     }
     *total = f;
     *moment = t;
+    h->contacts = heat_in;
+    h->walls = from_walls;
+}
+
+/* A grain as its heat laws see it. */
+INLINE void particle_grain(const clast_launch *launch, int i, grain *g PARTICLE_DECLARE)
+{
+    g->position = GRAIN3(position, i);
+    g->velocity = GRAIN3(velocity, i);
+    g->radius = radius[i];
+    g->mass = mass[i];
+    g->temperature = TEMPERATURE_OF_GRAIN(i);
+    g->value = TEMPERATURE_CONSTANTS(SUBSTANCE_ROW(i));
+    g->surroundings = R(0.0);
+    g->gas = v3(R(0.0), R(0.0), R(0.0));
+    ENVIRONMENT_AT(launch, g);
+}
+
+/* One thermal step of grain i, from the flows at its start. What a prescribed temperature takes comes from a source. */
+INLINE void particle_heat(const clast_launch *launch, int i, const grain *g, grain_heat *h PARTICLE_DECLARE)
+{
+    real dt = (real)launch->dt, apart = g->surroundings - g->temperature, capacity = temperature_capacity(g);
+    real given = SOURCE_HEAT(launch, i, g) + generation_heat(g) + THERMAL_GROUP_HEAT(launch, i);
+    h->convection = dt * (convection_coefficient(g, g->temperature) * apart);
+    h->radiation = dt * (radiation_coefficient(g, g->temperature) * apart);
+    h->walls = dt * h->walls;
+    real gain = dt * (h->contacts + given) + (h->convection + h->radiation);
+    real after = temperature_after(g->temperature, gain / capacity);
+    real held = THERMAL_GROUP_TEMPERATURE(launch, i, after);
+    h->sources = dt * given + capacity * (held - after);
+    TEMPERATURE_STORE(i, held);
+    HEAT_TALLY_ADD(i, h);
 }
 
 /* One step of grain i; returns the square of its displacement since the table was built, relative to the common one. */
@@ -59,7 +98,11 @@ __kernel void particle_stage(const clast_launch launch, __global clast_control *
         return;
     int i = get_global_id(0);
     vec3 f, t;
-    particle_gather(&launch, get_group_id(0), get_local_id(0), &f, &t PARTICLE_PASS);
+    grain g;
+    grain_heat h;
+    particle_gather(&launch, get_group_id(0), get_local_id(0), &f, &t, &h PARTICLE_PASS);
+    particle_grain(&launch, i, &g PARTICLE_PASS);
+    particle_heat(&launch, i, &g, &h PARTICLE_PASS);
     real travel2 = particle_advance(&launch, i, f, t PARTICLE_PASS);
     if (i < launch.particle_count && !(travel2 <= (real)launch.travel2)) {
         /* whoever writes, writes the same */

@@ -5,8 +5,9 @@ __kernel void particle_synchronise(const clast_launch launch, __global real *res
     int i = get_global_id(0);
     real m = mass[i], inertia = R(0.4) * m * radius[i] * radius[i], kick = (real)launch.kick;
     vec3 f, t, v = GRAIN3(velocity, i), w = ROTATION_LOAD(&launch, i);
+    grain_heat h;
     bool held = MOTION_GRAIN(i) >= 0;
-    particle_gather(&launch, get_group_id(0), get_local_id(0), &f, &t PARTICLE_PASS);
+    particle_gather(&launch, get_group_id(0), get_local_id(0), &f, &t, &h PARTICLE_PASS);
     f = body_force(add_scaled(f, m, from3(launch.gravity)), v, m);
     t = body_force(t, w, inertia);
     vec3 v1 = integrate_velocity(INTEGRATOR_VELOCITY(i, v), scale(R(1.0) / m, f), kick);

@@ -105,7 +105,7 @@ static void bad_tables(void **state)
         {"x_m,y_m,z_m,radius_m\n0,0,1e999,1\n", "grains.csv:2: z_m is `1e999`; it must be finite"},
         {"x_m,y_m,z_m,radius_m\n0,0,0,0\n", "grains.csv:2: radius_m is `0`; it must be above 0"},
         {"x_m,y_m,z_m,radius_m\n0,0,0,-1\n", "grains.csv:2: radius_m is `-1`; it must be above 0"},
-        {"x_m,y_m,z_m,radius_m,temperature_k\n0,0,0,1,-5\n", "grains.csv:2: temperature_k is `-5`; it must be 0 or more"},
+        {"x_m,y_m,z_m,radius_m,temperature_k\n0,0,0,1,-5\n", "grains.csv:2: temperature_k is `-5`; it must be above 0"},
     };
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         write_file(f->file, cases[n].text, strlen(cases[n].text));

@@ -27,8 +27,37 @@ static const law *const every_law[] = {
     &law_viscous_damping,
     &law_orientation_quaternion,
     &law_velocity_verlet,
+    &law_temperature_grains,
+    &law_temperature_pairs,
+    &law_substance_several,
+    &law_overlap_area,
+    &law_wall_temperature,
+    &law_environment_uniform,
+    &law_environment_profile,
+    &law_newton,
+    &law_still_gas,
+    &law_nusselt,
+    &law_stefan_boltzmann,
+    &law_volumetric,
+    &law_thermal_groups,
+    &law_heat_tally,
 };
 #define LAWS (sizeof every_law / sizeof *every_law)
+
+/* Laws of heat come with a temperature, those of surfaces with an environment, a wall's temperature with conduction. */
+static void complete_heat(live_laws *live)
+{
+    if (live->law[SLOT_WALL_HEAT] && !live->law[SLOT_CONDUCTION])
+        live->law[SLOT_CONDUCTION] = &law_overlap_area;
+    if (live->law[SLOT_WALL_HEAT] && !live->law[SLOT_WALLS])
+        live->law[SLOT_WALLS] = &law_walls_planes;
+    if ((live->law[SLOT_CONVECTION] || live->law[SLOT_RADIATION]) && !live->law[SLOT_ENVIRONMENT])
+        live->law[SLOT_ENVIRONMENT] = &law_environment_uniform;
+    static const slot_id thermal[] = {SLOT_SUBSTANCE, SLOT_CONDUCTION, SLOT_ENVIRONMENT, SLOT_HEAT_GENERATION, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY};
+    for (size_t n = 0; n < sizeof thermal / sizeof *thermal; n++)
+        if (live->law[thermal[n]] && (!live->law[SLOT_TEMPERATURE] || thermal[n] == SLOT_CONDUCTION))
+            live->law[SLOT_TEMPERATURE] = live->law[SLOT_CONDUCTION] ? &law_temperature_pairs : &law_temperature_grains;
+}
 
 /* What a scene derives from the laws that it names: friction and rolling turn grains, a friction law comes with a spring and the reverse. */
 static void complete(live_laws *live)
@@ -40,6 +69,7 @@ static void complete(live_laws *live)
         live->law[SLOT_SLIP] = &law_slip_single;
     if (live->law[SLOT_TANGENTIAL] || live->law[SLOT_ROLLING] || live->law[SLOT_ORIENTATION])
         live->law[SLOT_ROTATION] = &law_rotation_spin;
+    complete_heat(live);
     const law *verlet = live->law[SLOT_ROTATION] ? &law_velocity_verlet_spin : &law_velocity_verlet;
     live->law[SLOT_INTEGRATOR] = live->law[SLOT_INTEGRATOR] ? verlet : &law_semi_implicit_euler;
     for (slot_id slot = 0; slot < SLOT_COUNT; slot++) {
@@ -162,6 +192,22 @@ static void compile_offline(compilations *all, const live_laws *live)
     start_clang(c, live);
 }
 
+/* Laws of forces, and laws of the heat of single grains: no file of the one reads anything of the other. */
+static bool is_of_forces(const law *l)
+{
+    return l->slot >= SLOT_NORMAL && l->slot <= SLOT_BODY && l->slot != SLOT_CONDUCTION && l->slot != SLOT_WALL_HEAT;
+}
+
+static bool is_of_grain_heat(const law *l)
+{
+    return l->slot >= SLOT_ENVIRONMENT && l->slot <= SLOT_HEAT_TALLY;
+}
+
+static bool meet_nowhere(const law *a, const law *b)
+{
+    return (is_of_forces(a) && is_of_grain_heat(b)) || (is_of_forces(b) && is_of_grain_heat(a));
+}
+
 static void test_offline(void **state)
 {
     (void)state;
@@ -179,7 +225,7 @@ static void test_offline(void **state)
     }
     for (size_t a = 0; a < LAWS; a++)
         for (size_t b = a; b < LAWS; b++) {
-            if (b > a && every_law[b]->slot == every_law[a]->slot)
+            if (b > a && (every_law[b]->slot == every_law[a]->slot || meet_nowhere(every_law[a], every_law[b])))
                 continue;
             live = with(every_law[a], every_law[b]);
             compile_offline(&all, &live);
@@ -253,6 +299,8 @@ static void check_on_device(const live_laws *live)
     MUST(program_build(case_device(), text, &program, why));
     for (size_t k = 0; k < sizeof kernels / sizeof *kernels; k++)
         check_arguments(program, live, kernels[k], what);
+    if (live->law[SLOT_TEMPERATURE])
+        check_arguments(program, live, "heat_conductances", what);
     clReleaseProgram(program);
     free(text);
 }
@@ -271,6 +319,9 @@ static void test_on_device(void **state)
         {&law_constant_torque, &law_motion_groups},
         {&law_composition_several, &law_orientation_quaternion},
         {&law_local_damping, &law_rotation_spin},
+        {&law_overlap_area, &law_substance_several},
+        {&law_wall_temperature, &law_environment_profile},
+        {&law_nusselt, &law_thermal_groups},
     };
     for (size_t n = 0; n < sizeof pairs / sizeof *pairs; n++) {
         live_laws live = with(pairs[n][0], pairs[n][1]);
@@ -284,12 +335,12 @@ static void test_on_device(void **state)
 
 /* ---- a scene pays for what it calls for ---- */
 
-static bool names_friction(const char *name)
+static bool names_what_is_not_live(const char *name)
 {
-    return strstr(name, "spin") || strstr(name, "torque") || strstr(name, "spring") || strstr(name, "sliding");
+    return strstr(name, "heat") || strstr(name, "temperature") || strstr(name, "environment") || strstr(name, "grain_constants") || strstr(name, "spin") || strstr(name, "torque") || strstr(name, "spring") || strstr(name, "sliding");
 }
 
-static void test_frictionless(void **state)
+static void test_pays_for_nothing(void **state)
 {
     (void)state;
     sim_case c;
@@ -300,14 +351,14 @@ static void test_frictionless(void **state)
                   "walls: [{name: floor, shape: plane, point_m: [0, 0, -1], normal: [0, 0, 1]}]\n"
                   "stages: [{name: go, until: {steps: 1}, step_s: 1.0e-5}]\n");
     for (int f = 0; f < c.sim->field_count; f++)
-        assert_false(names_friction(c.sim->field[f].field->name));
+        assert_false(names_what_is_not_live(c.sim->field[f].field->name));
     for (int k = 0; k < c.sim->kernel_count; k++) {
         cl_uint arguments = 0;
         char name[256];
         assert_int_equal(clGetKernelInfo(c.sim->kernel[k].kernel, CL_KERNEL_NUM_ARGS, sizeof arguments, &arguments, NULL), CL_SUCCESS);
         for (cl_uint a = 0; a < arguments; a++) {
             assert_int_equal(clGetKernelArgInfo(c.sim->kernel[k].kernel, a, CL_KERNEL_ARG_NAME, sizeof name, name, NULL), CL_SUCCESS);
-            if (names_friction(name))
+            if (names_what_is_not_live(name))
                 fail_msg("%s has an argument %s", c.sim->kernel[k].name, name);
         }
     }
@@ -349,7 +400,7 @@ static const shared_place places[] = {
     PLACE(clast_launch, mover_row),
     PLACE(clast_launch, face_count),
     PLACE(clast_launch, mover_count),
-    PLACE(clast_launch, spare),
+    PLACE(clast_launch, heat_row),
     SIZE(clast_control),
     PLACE(clast_control, halt_step),
     PLACE(clast_control, reason),
@@ -376,6 +427,21 @@ static const shared_place places[] = {
     PLACE(clast_mover, versine),
     PLACE(clast_mover, velocity),
     PLACE(clast_mover, spin),
+    SIZE(clast_environment),
+    PLACE(clast_environment, gas_velocity),
+    SIZE(clast_profile),
+    PLACE(clast_profile, value),
+    PLACE(clast_profile, axis),
+    PLACE(clast_profile, count),
+    SIZE(clast_wall_heat),
+    PLACE(clast_wall_heat, flux),
+    PLACE(clast_wall_heat, quantum),
+    PLACE(clast_wall_heat, kind),
+    PLACE(clast_wall_heat, wall),
+    SIZE(clast_group_heat),
+    PLACE(clast_group_heat, heat),
+    PLACE(clast_group_heat, prescribed),
+    PLACE(clast_group_heat, spare),
     SIZE(clast_level),
     PLACE(clast_level, inverse_size),
     PLACE(clast_level, cells),
@@ -444,7 +510,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_no_law_forgotten), cmocka_unit_test(test_no_file_forgotten), cmocka_unit_test(test_offline),
-        cmocka_unit_test(test_on_device),        cmocka_unit_test(test_frictionless),      cmocka_unit_test(test_shared_structs),
+        cmocka_unit_test(test_on_device),        cmocka_unit_test(test_pays_for_nothing),      cmocka_unit_test(test_shared_structs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,134 @@
+/* Heat in a scene: whether there is a temperature, what a wall's is in a stage, and checks over several keys. */
+#include "scene_check.h"
+
+#include "property.h"
+#include "scene_table.h"
+
+#include <math.h>
+#include <string.h>
+
+static const slot_id thermal_slots[] = {SLOT_CONDUCTION, SLOT_CONVECTION, SLOT_RADIATION, SLOT_SOURCE, SLOT_HEAT_GENERATION};
+
+bool scene_has_heat(const scene *s)
+{
+    for (size_t k = 0; k < sizeof thermal_slots / sizeof *thermal_slots; k++)
+        if (scene_effect(s, -1, thermal_slots[k]))
+            return true;
+    return false;
+}
+
+static bool lists(char *const *word, int count, const char *name)
+{
+    for (int k = 0; k < count; k++)
+        if (strcmp(word[k], name) == 0)
+            return true;
+    return false;
+}
+
+bool scene_outputs(const scene *s, const char *name)
+{
+    return lists(s->output.fields, s->output.field_count, name) || lists(s->output.observables, s->output.observable_count, name);
+}
+
+bool scene_has_temperature(const scene *s)
+{
+    static const char *const names[] = {"temperature", "thermal_energy", "temperature_min", "temperature_mean", "temperature_max"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        if (scene_outputs(s, names[k]))
+            return true;
+    return scene_has_heat(s) || scene_tallies_heat(s);
+}
+
+bool scene_tallies_heat(const scene *s)
+{
+    static const char *const names[] = {"heat_sources", "heat_convection", "heat_radiation", "heat_walls"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        if (scene_outputs(s, names[k]))
+            return true;
+    return false;
+}
+
+static bool says_something(const wall_heat *heat)
+{
+    return heat->adiabatic || heat->temperature_k.given || !isnan(heat->flux_w);
+}
+
+const wall_heat *scene_wall_heat(const scene *s, int stage, int w)
+{
+    for (int t = stage; t >= 0; t--)
+        for (int k = s->stage[t].wall_change_count - 1; k >= 0; k--) {
+            const wall_change *change = &s->stage[t].wall_change[k];
+            if (change->wall == w && says_something(&change->heat))
+                return &change->heat;
+        }
+    return &s->wall[w].heat;
+}
+
+wall_heat_kind wall_heat_kind_of(const wall_heat *heat)
+{
+    if (heat->temperature_k.given)
+        return WALL_HEAT_TEMPERATURE;
+    return !isnan(heat->flux_w) && heat->flux_w != 0.0 ? WALL_HEAT_FLUX : WALL_HEAT_ADIABATIC;
+}
+
+status check_wall_heat(reader *r, int node, const wall_heat *heat)
+{
+    int ways = heat->adiabatic + heat->temperature_k.given + !isnan(heat->flux_w);
+    if (ways > 1)
+        return document_fail(r->document, node, r->why,
+                             "a wall is adiabatic (`heat: adiabatic`), or has a `temperature_k`, or gives a `heat_flux_w`; keep one");
+    return STATUS_OK;
+}
+
+static status check_environment(reader *r)
+{
+    const scene *s = r->scene;
+    static const slot_id slots[] = {SLOT_CONVECTION, SLOT_RADIATION};
+    for (size_t k = 0; k < 2; k++) {
+        const effect *live = scene_effect(s, -1, slots[k]);
+        if (!live)
+            continue;
+        int node = document_at(r->document, "effects[%d]", (int)(live - s->effect));
+        if (!s->environment.temperature_k.given)
+            return document_fail(r->document, node, r->why, "the %s law `%s` needs the temperature of the environment; add `environment: {temperature_k: ...}`",
+                                 slot_name(slots[k]), live->law->name);
+        for (int n = 0; n < LAW_PROPERTIES_MAX && live->law->gas_needs[n]; n++)
+            if (isnan(scene_gas(s, live->law->gas_needs[n])))
+                return document_fail(r->document, node, r->why, "the %s law `%s` needs `environment.gas.%s`", slot_name(slots[k]), live->law->name,
+                                     live->law->gas_needs[n]->key);
+    }
+    return STATUS_OK;
+}
+
+static status check_thermal_groups(reader *r)
+{
+    const scene *s = r->scene;
+    for (int g = 0; g < s->group_count; g++) {
+        const particle_group *group = &s->group[g];
+        int node = document_at(r->document, "particles[%d]", g);
+        if (group->thermal == THERMAL_PRESCRIBED && !group->temperature.given)
+            return document_fail(r->document, node, r->why, "`thermal: prescribed` needs `temperature_k`, a number or a table in time");
+        if (group->thermal != THERMAL_PRESCRIBED && quantity_varies_in_time(&group->temperature))
+            return document_fail(r->document, document_at(r->document, "particles[%d].temperature_k", g), r->why,
+                                 "a table in time prescribes the temperature; add `thermal: prescribed`, or give a number to start from");
+        if (group->thermal == THERMAL_FLUX && isnan(group->heat_flux_w))
+            return document_fail(r->document, node, r->why, "`thermal: flux` needs `heat_flux_w`, the heat into each particle");
+        if (group->thermal != THERMAL_FLUX && !isnan(group->heat_flux_w))
+            return document_fail(r->document, document_at(r->document, "particles[%d].heat_flux_w", g), r->why,
+                                 "`heat_flux_w` needs `thermal: flux`");
+    }
+    return STATUS_OK;
+}
+
+status scene_check_heat(reader *r)
+{
+    const scene *s = r->scene;
+    TRY(check_thermal_groups(r));
+    TRY(check_environment(r));
+    for (int m = 0; m < s->material_count && scene_has_temperature(s); m++)
+        if (isnan(scene_material(s, m, &property_specific_heat)))
+            return document_fail(r->document, document_at(r->document, "materials[%d]", m), r->why,
+                                 "the material `%s` lacks `%s`, which every scene with temperatures needs", s->material[m].name,
+                                 property_specific_heat.key);
+    return STATUS_OK;
+}

@@ -1,0 +1,20 @@
+/* thermal groups: grains whose temperature is prescribed, or that are given heat. Reads the row of the grain's group, -1 for free grains. */
+#ifndef THERMAL_GROUPS
+#define THERMAL_GROUPS 1
+#endif
+#define THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) READ(int, thermal_group) READ(clast_group_heat, group_heat)
+#define THERMAL_GROUP_ROW(launch) (group_heat + (launch)->heat_row * THERMAL_GROUPS)
+#define THERMAL_GROUP_HEAT(launch, i) thermal_group_heat(THERMAL_GROUP_ROW(launch), thermal_group[i])
+#define THERMAL_GROUP_TEMPERATURE(launch, i, t) thermal_group_temperature(THERMAL_GROUP_ROW(launch), thermal_group[i], t)
+
+/* W */
+INLINE real thermal_group_heat(__global const clast_group_heat *row, int group)
+{
+    return group >= 0 ? (real)row[group].heat : R(0.0);
+}
+
+/* At the end of the step. */
+INLINE real thermal_group_temperature(__global const clast_group_heat *row, int group, real free)
+{
+    return group >= 0 && row[group].prescribed ? (real)row[group].temperature : free;
+}

@@ -1,0 +1,3 @@
+/* source: no beam. */
+#define SOURCE_PARTICLE_FIELDS(READ, WRITE)
+#define SOURCE_HEAT(launch, i, g) R(0.0)

@@ -1,0 +1,19 @@
+/* temperature: grains have none, and nothing is heated. */
+#define TEMPERATURE_PAIR_FIELDS(READ, WRITE)
+#define TEMPERATURE_PARTICLE_FIELDS(READ, WRITE)
+#define TEMPERATURE_OF_BODY(i) R(0.0)
+#define TEMPERATURE_OF_GRAIN(i) R(0.0)
+#define TEMPERATURE_CONSTANTS(row) ((__global const real *)0)
+#define TEMPERATURE_STORE(i, t) (void)(t)
+
+INLINE real temperature_capacity(const grain *g)
+{
+    (void)g;
+    return R(1.0);
+}
+
+INLINE real temperature_after(real temperature, real rise)
+{
+    (void)rise;
+    return temperature;
+}

@@ -1,0 +1,3 @@
+/* temperature of the bodies of a contact: no law of the contact reads it. */
+#define TEMPERATURE_PAIR_FIELDS(READ, WRITE)
+#define TEMPERATURE_OF_BODY(i) R(0.0)

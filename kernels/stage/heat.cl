@@ -1,0 +1,72 @@
+/* What the limit of the thermal step, observables and methods for frozen beds read of heat. In programs with a temperature only. */
+
+/* Every record's conductance where its heat stands, W/K; 0 at a wall that has no temperature of its own. */
+__kernel void heat_conductances(const clast_launch launch PAIR_DECLARE)
+{
+    int k = get_global_id(0);
+    contact c;
+    wall_touch touch;
+    bool wall = (int)get_group_id(0) >= launch.first_wall_group;
+    if (wall)
+        contact_of_wall(&launch, k, &c, &touch PAIR_PASS);
+    else
+        contact_of_grains(&launch, k, &c PAIR_PASS);
+    c.dt = R(0.0);
+    c.value = contact_constants + c.class * CONTACT_CONSTANTS;
+    real conductance = wall ? WALL_HEAT_CONDUCTS(&launch, other[k]) * conduction_wall_conductance(&c) : conduction_conductance(&c);
+    CONDUCTION_STORE(&launch, k, conductance);
+}
+
+/* Per chunk of grains the smallest m c/(sum of what draws its temperature towards others'): by conduction, convection, radiation to a surface
+ * at most `hottest`, and by all. Reads the records' conductances. */
+#define HEAT_LIMITS 4
+
+__kernel void heat_limit(const clast_launch launch, __global double *restrict partial, const double hottest PARTICLE_DECLARE)
+{
+    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
+    real least[HEAT_LIMITS] = {R(1e30), R(1e30), R(1e30), R(1e30)};
+    for (int i = first; i < end; i++) {
+        grain g;
+        particle_grain(&launch, i, &g PARTICLE_PASS);
+        real conduction = R(0.0);
+        uint last = slot_offset[i / CLAST_BLOCK + 1];
+        for (uint s = slot_offset[i / CLAST_BLOCK] + i % CLAST_BLOCK; s < last && slots[s] != 0; s += CLAST_BLOCK)
+            conduction += CONDUCTION_GATHER(&launch, (slots[s] > 0 ? slots[s] : -slots[s]) - 1, R(1.0));
+        real convection = convection_coefficient(&g, g.temperature), radiation = radiation_coefficient(&g, (real)hottest);
+        const real rates[HEAT_LIMITS] = {conduction, convection, radiation, conduction + convection + radiation};
+        for (int q = 0; q < HEAT_LIMITS; q++)
+            least[q] = rates[q] > R(0.0) ? fmin(least[q], temperature_capacity(&g) / rates[q]) : least[q];
+    }
+    for (int q = 0; q < HEAT_LIMITS; q++)
+        partial[HEAT_LIMITS * chunk + q] = least[q];
+}
+
+/* Sums in the order of permanent ids: heat content, sum of temperatures, number of grains, smallest and largest temperature, and what each
+ * path has brought, where that is kept. */
+#define HEAT_SUMS (5 + CLAST_TALLIES)
+
+__kernel void heat_sums(const clast_launch launch, __global const int *restrict where, __global double *restrict partial,
+                        const int id_count PARTICLE_DECLARE)
+{
+    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, id_count);
+    double sum[HEAT_SUMS];
+    for (int q = 0; q < HEAT_SUMS; q++)
+        sum[q] = 0.0;
+    sum[3] = 1e30;
+    for (int n = first; n < end; n++) {
+        int i = where[n];
+        if (i < 0)
+            continue;
+        grain g;
+        particle_grain(&launch, i, &g PARTICLE_PASS);
+        sum[0] += temperature_capacity(&g) * g.temperature;
+        sum[1] += g.temperature;
+        sum[2] += 1.0;
+        sum[3] = fmin(sum[3], (double)g.temperature);
+        sum[4] = fmax(sum[4], (double)g.temperature);
+        for (int q = 0; q < CLAST_TALLIES; q++)
+            sum[5 + q] += HEAT_TALLY_OF(i, q);
+    }
+    for (int q = 0; q < HEAT_SUMS; q++)
+        partial[HEAT_SUMS * chunk + q] = sum[q];
+}
