@@ -51,7 +51,7 @@ static void columns_by_name(void **state)
     particle_group g;
     scene s = csv_case(&g, f->file);
     const char text[] = "\xef\xbb\xbf# from the lab\r\n\r\n radius_m , z_m,x_m,y_m,vy_m_s,wz_rad_s,temperature_k\r\n"
-                        "1e-3,3,1,2,0.5,9,350 # the first\r\n\n   \n2.0E-3, -3 ,\t-1,-2,-0.5,-9,0\r\n0.1,0,0,0,0,0,1";
+                        "1e-3,3,1,2,0.5,9,350 # the first\r\n\n   \n2.0E-3, -3 ,\t-1,-2,-0.5,-9,0.5\r\n0.1,0,0,0,0,0,1";
     write_file(f->file, text, sizeof text - 1);
     g.velocity_m_s[0] = 7;
     g.velocity_m_s[1] = 8;
@@ -61,7 +61,7 @@ static void columns_by_name(void **state)
     assert_true(b.position[0][0] == 1 && b.position[0][1] == 2 && b.position[0][2] == 3 && b.radius[0] == 1.0e-3);
     assert_true(b.velocity[0][0] == 7 && b.velocity[0][1] == 0.5 && b.spin[0][2] == 9 && b.spin[0][0] == 0 && b.temperature[0] == 350);
     assert_true(b.position[1][0] == -1 && b.position[1][1] == -2 && b.position[1][2] == -3 && b.radius[1] == 2.0e-3);
-    assert_true(b.velocity[1][1] == -0.5 && b.temperature[1] == 0 && b.temperature[2] == 1);
+    assert_true(b.velocity[1][1] == -0.5 && b.temperature[1] == 0.5 && b.temperature[2] == 1);
     assert_int_equal(b.material[2], 1);
     bed_free(&b);
 }

@@ -370,7 +370,7 @@ static const bad_scene bad_scenes[] = {
     {"title: base", "title: [[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]", "nested too deeply"},
     /* keys */
     {"title: base", "titel: base", "dir/scene.yaml:1:1: unknown key `titel` in a scene; did you mean `title`?"},
-    {"title: base", "environment: {}", "unknown key `environment` in a scene; its keys are `title`"},
+    {"title: base", "surroundings: {}", "unknown key `surroundings` in a scene; its keys are `title`"},
     {"title: base", "gravity: [0, 0, 0]", "did you mean `gravity_m_s2`?"},
     {"title: base", "seed: 1\nseed: 2", "dir/scene.yaml:2:1: the key `seed` stands twice in this scene, first at line 1"},
     {"youngs_modulus_pa: 5.0e6", "youngs_modulus: 5.0e6", "did you mean `youngs_modulus_pa`?"},
@@ -379,7 +379,7 @@ static const bad_scene bad_scenes[] = {
     {"name: floor, shape: plane", "name: floor", "a wall needs the key `shape`"},
     {"materials:\n", "walls_:\n", "unknown key `walls_`"},
     {"generator: list", "generator: list, count: 3", "`count` has no meaning in a particle group with `generator: list`; it belongs to `random`"},
-    {"generator: list, items", "generator: list, thermal: free, items", "unknown key `thermal` in a particle group"},
+    {"generator: list, items", "generator: list, thermic: free, items", "unknown key `thermic` in a particle group"},
     {"domain: {low_m: [-1, -1, -1], high_m: [1, 1, 1]}", "domain: {periodic: [x]}", "a domain needs the key `low_m`"},
     {"stages:\n  - {name: first, until: {rest: 1.0e-9}}", "stages:\n  - {name: first}", "a stage needs the key `until`"},
     /* numbers */
@@ -422,7 +422,7 @@ static const bad_scene bad_scenes[] = {
     {"high_m: [1, 1, 1]}", "high_m: [1, 1, 1], periodic: [w]}", "`periodic` must be one of `x`, `y`, `z`; it is `w`"},
     {"high_m: [1, 1, 1]}", "high_m: [1, 1, 1], periodic: x}", "`periodic` must be a list"},
     /* effects */
-    {"slot: normal", "slot: conduction", "there is no slot called `conduction`; this version has `normal`, `tangential`, `rolling`, `body`"},
+    {"slot: normal", "slot: induction", "there is no slot called `induction`; this version has `normal`"},
     {"slot: normal", "slot: periodic", "there is no slot called `periodic`"},
     {"law: hertz", "law: jkr", "the slot `normal` has no law called `jkr`; this version has `hertz`, `linear`"},
     {"{slot: normal, law: hertz}", "hertz", "an effect must be a mapping"},
@@ -485,9 +485,9 @@ static const bad_scene bad_scenes[] = {
     {"until: {rest: 1.0e-9}", "until: {}", "`until` needs at least one of"},
     {"gravity_m_s2: [0, 0, -9.81]", "gravity_m_s2: [0, 0, 0]", "dir/scene.yaml:21:33: `rest` compares with m g r, and this stage has no gravity; use `rest_j`"},
     {"observables: [kinetic_energy]", "observables: [kinetic_enrgy]", "there is no observable called `kinetic_enrgy`; did you mean `kinetic_energy`?"},
-    {"observables: [kinetic_energy]", "observables: [thermal_energy]", "the observable `thermal_energy` needs a heat law, which this version does not have"},
+    {"observables: [kinetic_energy]", "observables: [thermal_energy]", "the material `glass` lacks `specific_heat_j_kgk`, which every scene with temperatures needs"},
     {"observables: [kinetic_energy]", "observables: [work_walls]", "needs the energy ledger, which this version does not have"},
-    {"observables: [kinetic_energy]", "fields: [temperature]", "the field `temperature` needs a heat law"},
+    {"observables: [kinetic_energy]", "fields: [temperature]", "the material `glass` lacks `specific_heat_j_kgk`"},
     {"observables: [kinetic_energy]", "fields: [position, position]", "listed twice"},
     {"observables: [kinetic_energy]", "fields: [colour]", "there is no field called `colour`"},
 };
