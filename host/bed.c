@@ -46,7 +46,7 @@ status bed_extend(const scene *s, int group, int64_t count, bed *b, int64_t *fir
     int64_t all = b->count + count;
     if (!grow((void **)&b->position, all, sizeof *b->position) || !grow((void **)&b->velocity, all, sizeof *b->velocity) ||
         !grow((void **)&b->spin, all, sizeof *b->spin) || !grow((void **)&b->radius, all, sizeof *b->radius) ||
-        !grow((void **)&b->temperature, all, sizeof *b->temperature) || !grow((void **)&b->material, all, sizeof *b->material) ||
+        !grow((void **)&b->scalar, all, sizeof *b->scalar) || !grow((void **)&b->temperature, all, sizeof *b->temperature) || !grow((void **)&b->material, all, sizeof *b->material) ||
         !grow((void **)&b->group, all, sizeof *b->group))
         return fail(why, STATUS_ERROR, "out of memory for %" PRId64 " particles", all);
     *first = b->count;
@@ -56,6 +56,7 @@ status bed_extend(const scene *s, int group, int64_t count, bed *b, int64_t *fir
         memcpy(b->spin[i], g->spin_rad_s, sizeof b->spin[i]);
         b->radius[i] = 0.0;
         b->temperature[i] = g->temperature_k;
+        b->scalar[i] = g->scalar;
         b->material[i] = g->material;
         b->group[i] = group;
     }
@@ -106,6 +107,7 @@ status bed_list(const scene *s, int group, bed *b, failure *why)
         take_given(b->spin[i], item->spin_rad_s, 3);
         take_given(&b->radius[i], &item->radius_m, 1);
         take_given(&b->temperature[i], &item->temperature_k, 1);
+        take_given(&b->scalar[i], &item->scalar, 1);
     }
     return STATUS_OK;
 }
@@ -226,6 +228,7 @@ void bed_free(bed *b)
     free(b->spin);
     free(b->radius);
     free(b->temperature);
+    free(b->scalar);
     free(b->material);
     free(b->group);
     memset(b, 0, sizeof *b);

@@ -12,6 +12,7 @@ typedef struct bed {
     double (*velocity)[3]; /* m/s */
     double (*spin)[3];     /* rad/s */
     double *radius;        /* m */
+    double *scalar;        /* what a bond criterion looks at; NULL: 0 everywhere */
     double *temperature;   /* K; NAN where the scene gives none */
     int32_t *material;
     int32_t *group;

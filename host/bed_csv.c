@@ -11,10 +11,10 @@
 /* A longer line is no table of particles; the bound keeps a binary file from filling the memory. */
 #define LINE_MAX_BYTES 65536
 
-typedef enum column { X, Y, Z, RADIUS, VX, VY, VZ, WX, WY, WZ, TEMPERATURE, COLUMN_COUNT } column;
+typedef enum column { X, Y, Z, RADIUS, VX, VY, VZ, WX, WY, WZ, TEMPERATURE, SCALAR, COLUMN_COUNT } column;
 
 static const char *const column_names[COLUMN_COUNT] = {"x_m",    "y_m",      "z_m",      "radius_m", "vx_m_s",       "vy_m_s",
-                                                       "vz_m_s", "wx_rad_s", "wy_rad_s", "wz_rad_s", "temperature_k"};
+                                                       "vz_m_s", "wx_rad_s", "wy_rad_s", "wz_rad_s", "temperature_k", "scalar"};
 
 typedef struct table {
     const char *path;
@@ -111,7 +111,7 @@ static status read_header(table *t, bool radius_given, failure *why)
             return fail(why, STATUS_BAD_INPUT,
                         "%s:%" PRId64
                         ": column `%.60s` is unknown; known are x_m, y_m, z_m, radius_m, vx_m_s, vy_m_s, vz_m_s, wx_rad_s, wy_rad_s, "
-                        "wz_rad_s and temperature_k, separated by commas",
+                        "wz_rad_s, temperature_k and scalar, separated by commas",
                         t->path, t->line_number, name);
         if (t->present[k])
             return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": column `%s` appears twice", t->path, t->line_number, name);
@@ -201,6 +201,8 @@ static status take_table(const scene *s, int group, const table *t, bed *b, fail
             b->radius[i] = row[RADIUS];
         if (t->present[TEMPERATURE])
             b->temperature[i] = row[TEMPERATURE];
+        if (t->present[SCALAR])
+            b->scalar[i] = row[SCALAR];
     }
     return STATUS_OK;
 }

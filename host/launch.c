@@ -131,6 +131,8 @@ static bool has_kernel(const simulation *sim, const char *name)
         return live_keeps_half_steps(&sim->live);
     if (strncmp(name, "heat_", 5) == 0)
         return sim->live.law[SLOT_TEMPERATURE] != NULL;
+    if (strstr(name, "_bond_"))
+        return sim->live.law[SLOT_BOND] != NULL;
     return !strstr(name, "_walls") || sim->live.law[SLOT_WALLS];
 }
 
@@ -147,7 +149,7 @@ status launch_open(simulation *sim, failure *why)
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
-                                        "particle_synchronise", "heat_conductances", "heat_limit", "heat_sums"};
+                                        "particle_synchronise", "table_bond_sums", "heat_conductances", "heat_limit", "heat_sums"};
     sim->kernel_count = 0;
     for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
         if (!has_kernel(sim, names[n]))

@@ -6,7 +6,7 @@
 #include <string.h>
 
 const law *const laws[] = {&law_hertz,        &law_linear,        &law_mindlin, &law_coulomb_linear, &law_elastic_plastic,
-                           &law_constant_torque, &law_local_damping, &law_viscous_damping, &law_overlap_area, &law_newton,
+                           &law_constant_torque, &law_power, &law_adhesion, &law_local_damping, &law_viscous_damping, &law_overlap_area, &law_newton,
                            &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, NULL};
 
 static const struct {
@@ -15,7 +15,7 @@ static const struct {
 } slots[SLOT_COUNT] = {
     [SLOT_COMPOSITION] = {"composition", false}, [SLOT_PERIODIC] = {"periodic", false},     [SLOT_MOTION] = {"motion", false},
     [SLOT_ROTATION] = {"rotation", false},       [SLOT_NORMAL] = {"normal", true},
-    [SLOT_BONDING] = {"bonding", false},         [SLOT_BOND] = {"bond", false},              [SLOT_COHESION] = {"cohesion", false},
+    [SLOT_BONDING] = {"bonding", false},         [SLOT_BOND] = {"bond", true},              [SLOT_COHESION] = {"cohesion", false},
     [SLOT_SLIP] = {"slip", false},
     [SLOT_TANGENTIAL] = {"tangential", true},    [SLOT_ROLLING] = {"rolling", true},        [SLOT_WALLS] = {"walls", false},
     [SLOT_TEMPERATURE] = {"temperature", false}, [SLOT_SUBSTANCE] = {"substance", false},   [SLOT_CONDUCTION] = {"conduction", true},
@@ -65,6 +65,10 @@ const property *const *interaction_properties(void)
     static const property *const all[] = {&property_restitution,       &property_normal_damping,   &property_tangential_damping,
                                           &property_rolling_damping,   &property_friction_static,  &property_friction_dynamic,
                                           &property_rolling_friction,  &property_normal_stiffness, &property_tangential_stiffness,
+                                          &property_repulsion_stiffness, &property_repulsion_exponent, &property_bond_stiffness,
+                                          &property_bond_equilibrium_overlap, &property_bond_normalised_stiffness,
+                                          &property_bond_equilibrium_strain, &property_bond_exponent, &property_bond_damping,
+                                          &property_bond_threshold, &property_bond_tensile_strength, &property_bond_shear_strength,
                                           NULL};
     return all;
 }

@@ -122,6 +122,7 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         out->law[SLOT_MOTION] = &law_motion_groups;
     if (turning)
         out->law[SLOT_ROTATION] = &law_rotation_spin;
+    out->law[SLOT_BONDING] = bonding_of(out->law[SLOT_BOND], out->option[SLOT_BOND]);
     if (out->law[SLOT_TANGENTIAL])
         out->law[SLOT_SLIP] = two_frictions(scene) ? &law_slip_two : &law_slip_single;
     if (scene->wall_count > 0)
@@ -148,6 +149,8 @@ void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, liv
         out->law[SLOT_WALL_HEAT] = NULL;
     if (!out->law[SLOT_CONVECTION] && !out->law[SLOT_RADIATION])
         out->law[SLOT_ENVIRONMENT] = NULL;
+    if (!out->law[SLOT_BOND])
+        out->law[SLOT_BONDING] = NULL;
 }
 
 /* The file that fills a slot when no law does. */
@@ -201,6 +204,8 @@ int live_table_files(const live_laws *live, const char **files)
     files[count++] = "stage/table.cl";
     if (live->law[SLOT_WALLS])
         files[count++] = "stage/table_walls.cl";
+    if (live->law[SLOT_BOND])
+        files[count++] = "stage/table_bonds.cl";
     return count;
 }
 

@@ -143,6 +143,7 @@ status observe_contact_sums(simulation *sim, contact_sums *out, failure *why)
 
 typedef struct record_arrays {
     int32_t *owner, *other, *id;
+    double *bonded; /* NULL where no bond law is live */
     double *overlap, *radius, *force[3], *torque[3], *heat, *position; /* position: [grain][3]; heat: NULL without conduction */
 } record_arrays;
 
@@ -152,6 +153,7 @@ static void free_records(record_arrays *r)
     free(r->other);
     free(r->id);
     free(r->overlap);
+    free(r->bonded);
     free(r->radius);
     free(r->position);
     free(r->heat);
@@ -186,6 +188,9 @@ static status read_records(simulation *sim, record_arrays *r, failure *why)
     memset(r, 0, sizeof *r);
     TRY(run_on_records(sim, "observe_records", why));
     TRY(read_component(sim, force, 2, &r->overlap, why));
+    stored_field *bonded = sim->live.law[SLOT_BOND] ? store_find(sim, "bonded") : NULL;
+    if (bonded)
+        TRY(read_component(sim, bonded->mem, 0, &r->bonded, why));
     TRY(run_on_records(sim, "pair_probe", why));
     TRY(read_ints(sim, t->owner[t->now], t->record_count, &r->owner, why));
     TRY(read_ints(sim, t->other[t->now], t->record_count, &r->other, why));
@@ -214,9 +219,20 @@ static void torque_without_spin(const simulation *sim, const record_arrays *r, i
         torque[c] = -(arm[(c + 1) % 3] * r->force[(c + 2) % 3][k] - arm[(c + 2) % 3] * r->force[(c + 1) % 3][k]);
 }
 
+static bool is_bonded(const record_arrays *r, int64_t k)
+{
+    return r->bonded && llround(fabs(r->bonded[k])) % 2 == 1;
+}
+
+/* Bodies that bonds or cohesion hold act on each other where they are apart, too. */
+static bool is_live(const record_arrays *r, int64_t k)
+{
+    return r->overlap[k] > 0.0 || is_bonded(r, k) || r->force[0][k] != 0.0 || r->force[1][k] != 0.0 || r->force[2][k] != 0.0;
+}
+
 static live_contact make_contact(const simulation *sim, const record_arrays *r, int64_t k)
 {
-    live_contact contact = {.i = r->id[r->owner[k]], .j = -1, .wall = -1, .overlap = r->overlap[k]};
+    live_contact contact = {.i = r->id[r->owner[k]], .j = -1, .wall = -1, .overlap = r->overlap[k], .bonded = is_bonded(r, k)};
     bool wall = k >= sim->table.wall_base;
     double ri = r->radius[r->owner[k]], sign = 1.0, effective = ri;
     if (wall) {
@@ -267,7 +283,7 @@ status observe_contacts(simulation *sim, bool walls_only, live_contact **out, in
     if (result == STATUS_OK && !(*out = malloc(sizeof **out * (size_t)(records_end(sim) - first + 1))))
         result = fail(why, STATUS_ERROR, "out of memory");
     for (int64_t k = first; k < records_end(sim) && result == STATUS_OK; k++)
-        if (r.overlap[k] > 0.0 || (r.heat && r.heat[k] != 0.0)) /* held grains conduct and do not press */
+        if (is_live(&r, k) || (r.heat && r.heat[k] != 0.0)) /* held grains conduct and do not press */
             (*out)[(*count)++] = make_contact(sim, &r, k);
     if (result == STATUS_OK)
         qsort(*out, (size_t)*count, sizeof **out, by_ids);
@@ -278,7 +294,7 @@ status observe_contacts(simulation *sim, bool walls_only, live_contact **out, in
 static void add_totals(const simulation *sim, const record_arrays *r, double *const own[3], double *const opposite[3], double *out)
 {
     for (int64_t k = 0; k < records_end(sim); k++) {
-        if (!(r->overlap[k] > 0.0))
+        if (!is_live(r, k))
             continue;
         for (int c = 0; c < 3; c++) {
             out[3 * (int64_t)r->id[r->owner[k]] + c] += own[c][k];
@@ -319,7 +335,7 @@ status observe_virial(simulation *sim, double *stress, failure *why)
     memset(stress, 0, 9 * sizeof *stress);
     status result = read_records(sim, &r, why);
     for (int64_t k = 0; k < sim->table.wall_base && result == STATUS_OK; k++) {
-        if (!(r.overlap[k] > 0.0))
+        if (!is_live(&r, k))
             continue;
         double branch[3];
         for (int c = 0; c < 3; c++) {

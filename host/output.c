@@ -184,7 +184,7 @@ static status frame_contacts(output *o, results_contacts *c, void **columns, fai
     TRY(observe_contacts(o->sim, false, &live, &count, why));
     columns[0] = live;
     size_t n = (size_t)count + 1;
-    int32_t *ids = columns[1] = malloc(3 * n * sizeof *ids);
+    int32_t *ids = columns[1] = malloc(4 * n * sizeof *ids);
     double *reals = columns[2] = malloc(6 * n * sizeof *reals);
     if (!ids || !reals)
         return fail(why, STATUS_ERROR, "out of memory");
@@ -192,6 +192,7 @@ static status frame_contacts(output *o, results_contacts *c, void **columns, fai
         ids[k] = live[k].i;
         ids[(int64_t)n + k] = live[k].j;
         ids[2 * (int64_t)n + k] = live[k].wall;
+        ids[3 * (int64_t)n + k] = live[k].bonded;
         reals[k] = live[k].overlap;
         reals[(int64_t)n + k] = live[k].area;
         memcpy(reals + 2 * n + 3 * k, live[k].force, sizeof live[k].force);
@@ -201,6 +202,7 @@ static status frame_contacts(output *o, results_contacts *c, void **columns, fai
                             .i = ids,
                             .j = ids + n,
                             .wall = ids + 2 * n,
+                            .bonded = ids + 3 * n,
                             .overlap = reals,
                             .area = reals + n,
                             .force = (const double(*)[3])(reals + 2 * n),
@@ -234,6 +236,7 @@ status output_frame(output *o, failure *why)
 typedef struct measured {
     particle_sums grains;
     contact_sums contacts;
+    bond_sums bonds;
     double stress[9];
     heat_sums heat;
 } measured;
@@ -262,6 +265,9 @@ static int put_observable(const output *o, const char *name, const measured *m, 
                    {"coordination_number", sim->count ? (double)(m->contacts.contacts + m->contacts.pairs) / (double)sim->count : 0.0},
                    {"contacts", (double)m->contacts.contacts},
                    {"rebuilds", (double)sim->rebuilds},
+                   {"bonds_alive", (double)m->bonds.alive},
+                   {"bonds_made", (double)m->bonds.made},
+                   {"bonds_broken", (double)m->bonds.broken},
                    {"left_count", (double)sim->left_count},
                    {"left_mass", sim->left_mass},
                    {"thermal_energy", m->heat.content},
@@ -317,6 +323,7 @@ status output_observe(output *o, failure *why)
     TRY(observe_particle_sums(o->sim, &m.grains, why));
     if (o->wants_contacts)
         TRY(observe_contact_sums(o->sim, &m.contacts, why));
+    TRY(bonds_count(o->sim, &m.bonds, why));
     if (o->wants_stress)
         TRY(observe_virial(o->sim, m.stress, why));
     if (o->wants_heat)

@@ -8,6 +8,7 @@ const output_name output_fields[] = {
     {"orientation", "1", 4, NULL, "unit quaternion w, x, y, z"},
     {"force", "N", 3, NULL, "total force"},
     {"torque", "N m", 3, NULL, "total torque about the centre"},
+    {"scalar", "1", 1, NULL, "the scalar of the grain that a bond criterion looks at"},
     {"temperature", "K", 1, NULL, "temperature"},
     {0},
 };
@@ -48,8 +49,8 @@ const output_name output_observables[] = {
     {"temperature_min", "K", 1, NULL, "lowest temperature"},
     {"temperature_mean", "K", 1, NULL, "mean temperature"},
     {"temperature_max", "K", 1, NULL, "highest temperature"},
-    {"bonds_alive", "1", 1, "a bond law", "living bonds"},
-    {"bonds_made", "1", 1, "a bond law", "bonds made so far"},
-    {"bonds_broken", "1", 1, "a bond law", "bonds broken so far"},
+    {"bonds_alive", "1", 1, NULL, "living bonds"},
+    {"bonds_made", "1", 1, NULL, "bonds made so far"},
+    {"bonds_broken", "1", 1, NULL, "bonds broken so far"},
     {0},
 };

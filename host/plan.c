@@ -133,6 +133,12 @@ static status make_plan(scene *scene, const bed *bed, simulation *sim, plan *out
     if (!out->unused)
         return fail(why, STATUS_ERROR, "out of memory while planning");
     TRY(collect_stages(sim, out, why));
+    for (int s = 0; s < scene->stage_count && out->bond_count == 0; s++) {
+        free(out->bond);
+        out->bond = bond_figures_of(scene, bed, s, &out->bond_count);
+        if (!out->bond)
+            return fail(why, STATUS_ERROR, "out of memory while planning");
+    }
     collect_memory(sim, out);
     collect_arguments(&sim->all, "pair_stage", &out->pair);
     collect_arguments(&sim->all, "particle_stage", &out->particle);
@@ -171,6 +177,7 @@ static status plan_scene(scene *scene, const bed *bed, device *device, const cha
     for (int k = 0; p.unused && p.unused[k]; k++)
         free(p.unused[k]);
     free(p.unused);
+    free(p.bond);
     free(p.group);
     free(p.stage);
     return result;

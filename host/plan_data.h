@@ -1,6 +1,7 @@
 /* A plan as plain data: collected once, then written as text or JSON. */
 #ifndef CLAST_HOST_PLAN_DATA_H
 #define CLAST_HOST_PLAN_DATA_H
+#include "bond_figures.h"
 #include "simulation.h"
 
 /* A group of grains as generated. */
@@ -51,6 +52,8 @@ typedef struct plan {
     char **unused; /* places in the scene, as --set writes them; ends with NULL */
     int field_count;
     plan_field field[SIMULATION_FIELDS_MAX];
+    int bond_count;
+    bond_figures *bond; /* of the first stage in which grains bond */
     uint64_t table_bytes, other_bytes, bytes;
     uint64_t packed_bytes; /* when the bed is packed densely: contacts and their table grow with a bed that settles */
     double skin_m;

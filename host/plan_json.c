@@ -91,6 +91,24 @@ static json_t *arguments(const plan *p, const plan_arguments *of)
     return out;
 }
 
+static json_t *bonds(const plan *p)
+{
+    json_t *all = json_array();
+    for (int k = 0; k < p->bond_count; k++) {
+        const bond_figures *f = &p->bond[k];
+        json_t *one = json_object();
+        json_object_set_new(one, "between", json_pack("[s, s]", f->a, f->b));
+        json_object_set_new(one, "equilibrium_overlap_m", number(f->equilibrium));
+        json_object_set_new(one, "critical_overlap_m", number(f->critical));
+        json_object_set_new(one, "pull_off_force_n", number(f->pull_off));
+        json_object_set_new(one, "critical_velocity_m_s", number(f->velocity));
+        json_object_set_new(one, "sticks_from_m_s", number(f->sticks_from));
+        json_object_set_new(one, "breaks_from_m_s", number(f->breaks_from));
+        json_array_append_new(all, one);
+    }
+    return all;
+}
+
 static json_t *probe(const plan_probe *of)
 {
     if (!of->done)
@@ -120,6 +138,7 @@ status plan_write_json(const plan *p, failure *why)
     json_object_set_new(root, "overlap_max", number(p->overlap_max));
     json_object_set_new(root, "unused", unused);
     json_object_set_new(root, "stages", stages(p));
+    json_object_set_new(root, "bonds", bonds(p));
     json_object_set_new(root, "memory", memory(p));
     json_object_set_new(root, "skin_m", number(p->skin_m));
     json_object_set_new(root, "pair_stage_arguments", arguments(p, &p->pair));

@@ -93,6 +93,26 @@ static void print_laws(const plan *p)
     }
 }
 
+static void print_bonds(const plan *p)
+{
+    if (p->bond_count > 0)
+        printf("\nBonds, between grains of mean size\n");
+    for (int k = 0; k < p->bond_count; k++) {
+        const bond_figures *f = &p->bond[k];
+        printf("  %s and %s%s: equilibrium overlap %.5g m, critical overlap %.5g m, pull-off force %.5g N\n", f->a, f->wall ? "the wall " : "", f->b,
+               f->equilibrium, f->critical, f->pull_off);
+        printf("    critical velocity %.7g m/s (BM Eq. 21)", f->velocity);
+        if (f->sticks_from > f->velocity)
+            printf(", %.5g m/s with the damping of the contact", f->sticks_from);
+        if (isinf(f->breaks_from))
+            printf("; no impact below a thousand times that breaks a fresh bond\n");
+        else if (f->breaks_from <= f->sticks_from)
+            printf("; without damping every fresh bond breaks again\n");
+        else
+            printf("; from %.5g m/s a fresh bond breaks again\n", f->breaks_from);
+    }
+}
+
 static void print_end(const plan_stage *s)
 {
     const scene_stage *stage = s->stage;
@@ -192,6 +212,7 @@ void plan_write_text(const plan *p)
            p->scene->path, p->scene->dimensions, device);
     print_particles(p);
     print_laws(p);
+    print_bonds(p);
     print_unused(p);
     print_steps(p);
     print_memory(p);

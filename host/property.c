@@ -37,6 +37,29 @@ const property property_normal_stiffness = {"normal_stiffness_n_m", 0, 1e15, tru
 const property property_tangential_stiffness = {"tangential_stiffness_n_m", 0, 1e15, false, NAN, NULL,
                                                 "stiffness of the linear tangential spring"};
 
+const property property_repulsion_stiffness = {"repulsion_stiffness", 0, 1e30, true, NAN, NULL,
+                                               "stiffness k of the normal force k d^a, in N/m^a"};
+const property property_repulsion_exponent = {"repulsion_exponent", 0.1, 10, false, 1.5, NULL, "exponent a of the normal force k d^a"};
+
+const property property_bond_stiffness = {"bond_stiffness", 0, 1e30, false, NAN, NULL,
+                                          "adhesion k of the bond force k d^a, in N/m^a; 0: this pair does not bond"};
+const property property_bond_equilibrium_overlap = {"bond_equilibrium_overlap_m", 0, 1, true, NAN, NULL,
+                                                    "overlap at which a bond is at rest; gives the adhesion instead of `bond_stiffness`"};
+const property property_bond_normalised_stiffness = {"bond_normalised_stiffness_n", 0, 1e30, true, NAN, NULL,
+                                                     "adhesion k r*^a of the bond force per strain d/r*; gives the adhesion instead of `bond_stiffness`"};
+const property property_bond_equilibrium_strain = {"bond_equilibrium_strain", 0, 1, true, NAN, NULL,
+                                                   "overlap over r* at which a bond is at rest; gives the adhesion instead of `bond_stiffness`"};
+const property property_bond_exponent = {"bond_exponent", 0, 10, true, 1.0, NULL,
+                                         "exponent of adhesion in the overlap; below that of the repulsion (1.5 for Hertz)"};
+const property property_bond_damping = {"bond_damping_ratio", 0, 100, false, NAN, &property_normal_damping,
+                                        "damping of a bond, ratio to critical; default: the normal one"};
+const property property_bond_threshold = {"bond_threshold", -1e30, 1e29, false, NAN, NULL,
+                                          "value above which the bond criterion is met, in the unit of what it looks at"};
+const property property_bond_tensile_strength = {"bond_tensile_strength_pa", 0, 1e29, true, 1e30, NULL,
+                                                 "tension at which a bond breaks; default: it does not"};
+const property property_bond_shear_strength = {"bond_shear_strength_pa", 0, 1e29, true, 1e30, NULL,
+                                               "shear stress at which a bond breaks; default: it does not"};
+
 double interaction_value(const contact_class *class, const property *property)
 {
     return scene_interaction(class->scene, class->stage, class->material_a, class->material_b, class->wall, property);

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define HIDERS_MAX 4
+
 static int property_index(const property *const *all, const property *wanted)
 {
     for (int k = 0; all[k]; k++)
@@ -15,7 +17,7 @@ static int property_index(const property *const *all, const property *wanted)
     return -1;
 }
 
-/* Two ways of saying one thing, or a value that follows another unless it is given closer: where an entry gives `closer`, entries
+/* Ways of saying one thing, or a value that follows another unless it is given closer: where an entry gives `closer`, entries
  * further away that give `hidden` do not count. */
 static const struct {
     const property *hidden, *closer;
@@ -25,17 +27,27 @@ static const struct {
     {&property_friction_dynamic, &property_friction_static},
 };
 
-static const property *hidden_by(const property *p)
+/* Four ways of saying how strongly a bond pulls: each hides the others. */
+static const property *const adhesions[HIDERS_MAX] = {&property_bond_stiffness, &property_bond_equilibrium_overlap,
+                                                      &property_bond_normalised_stiffness, &property_bond_equilibrium_strain};
+
+/* Indices of the properties that hide p where they stand closer; -1 ends them. */
+static void find_hiders(const property *p, int *closer)
 {
+    int count = 0;
     for (size_t k = 0; k < sizeof hides / sizeof *hides; k++)
         if (hides[k].hidden == p)
-            return hides[k].closer;
-    return NULL;
+            closer[count++] = property_index(interaction_properties(), hides[k].closer);
+    for (int k = 0; k < HIDERS_MAX; k++)
+        for (int j = 0; j < HIDERS_MAX && adhesions[k] == p; j++)
+            if (j != k)
+                closer[count++] = property_index(interaction_properties(), adhesions[j]);
+    closer[count] = -1;
 }
 
 /* One look at the entries that may speak for a contact, from the closest on. */
 typedef struct search {
-    int wanted, closer; /* indices of properties; closer -1: nothing hides it */
+    int wanted, closer[HIDERS_MAX + 1]; /* indices of properties; what hides it ends with -1 */
     const char *a, *b;
     int wall;
     bool ended;
@@ -49,9 +61,9 @@ static void look_at(search *find, const double *value)
     if (!isnan(value[find->wanted])) {
         find->value = value[find->wanted];
         find->ended = true;
-    } else if (find->closer >= 0 && !isnan(value[find->closer])) {
-        find->ended = true;
     }
+    for (int k = 0; find->closer[k] >= 0; k++)
+        find->ended = find->ended || !isnan(value[find->closer[k]]);
 }
 
 static bool is_pair(const interaction *entry, const char *a, const char *b)
@@ -90,9 +102,8 @@ static double written_value(const scene *s, int stage, int material_a, int mater
     const int index = property_index(interaction_properties(), wanted);
     if (index < 0)
         return NAN;
-    search find = {.wanted = index, .closer = -1, .wall = w, .value = NAN};
-    if (hidden_by(wanted))
-        find.closer = property_index(interaction_properties(), hidden_by(wanted));
+    search find = {.wanted = index, .wall = w, .value = NAN};
+    find_hiders(wanted, find.closer);
     find.a = s->material[material_a].name;
     find.b = w >= 0 ? s->wall[w].name : s->material[material_b].name;
     look_everywhere(&find, s, stage < s->stage_count ? stage : s->stage_count - 1);

@@ -112,7 +112,7 @@ typedef enum generator { GENERATOR_LIST, GENERATOR_LATTICE, GENERATOR_RANDOM, GE
 typedef enum lattice { LATTICE_SIMPLE_CUBIC, LATTICE_HEXAGONAL, LATTICE_TRIANGULAR } lattice;
 
 typedef struct particle_item {
-    double position_m[3], velocity_m_s[3], spin_rad_s[3], radius_m, temperature_k; /* temperature NAN where absent */
+    double position_m[3], velocity_m_s[3], spin_rad_s[3], radius_m, temperature_k, scalar; /* temperature NAN where absent */
 } particle_item;
 
 typedef struct particle_group {
@@ -123,7 +123,7 @@ typedef struct particle_group {
     radius_spec radius_m;
     bool region_given;
     double region_low_m[3], region_high_m[3];
-    double velocity_m_s[3], spin_rad_s[3], temperature_k; /* temperature at the start, NAN where absent */
+    double velocity_m_s[3], spin_rad_s[3], temperature_k, scalar; /* temperature at the start, NAN where absent */
     quantity temperature;  /* the same as written: a prescribed one may be a table in time */
     thermal_kind thermal;
     double heat_flux_w;    /* into each particle; NAN where absent */

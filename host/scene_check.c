@@ -1,5 +1,6 @@
 #include "scene_check.h"
 
+#include "laws/laws.h"
 #include "property.h"
 #include "scene_table.h"
 
@@ -114,7 +115,7 @@ static status check_changes_once(reader *r)
 static status check_normal_present(reader *r)
 {
     const scene *s = r->scene;
-    static const slot_id dependent[] = {SLOT_TANGENTIAL, SLOT_ROLLING};
+    static const slot_id dependent[] = {SLOT_BOND, SLOT_COHESION, SLOT_TANGENTIAL, SLOT_ROLLING};
     for (size_t k = 0; k < sizeof dependent / sizeof *dependent; k++) {
         const effect *live = scene_effect(s, -1, dependent[k]);
         if (live && !scene_effect(s, -1, SLOT_NORMAL))
@@ -246,6 +247,18 @@ static status check_output_word(reader *r, const output_name *known, const char 
     return document_fail(r->document, node, r->why, "there is no %s called `%.60s`; this version has %s", kind, word, all);
 }
 
+/* The scalar is kept where a bond criterion looks at it. */
+static status check_bond_output(reader *r, int node, const char *word)
+{
+    const effect *bond = scene_effect(r->scene, -1, SLOT_BOND);
+    if (strncmp(word, "bonds_", 6) == 0 && !bond)
+        return document_fail(r->document, node, r->why, "the observable `%s` needs a bond law; add one, like {slot: bond, law: adhesion}", word);
+    if (strcmp(word, "scalar") != 0 || (bond && (int)bond->option[BOND_CRITERION] == BOND_SCALAR_ABOVE))
+        return STATUS_OK;
+    return document_fail(r->document, node, r->why,
+                         "the field `scalar` needs a bond law with `criterion: scalar_above`; nothing else looks at it, so it is not kept");
+}
+
 static status check_output(reader *r)
 {
     const scene *s = r->scene;
@@ -260,6 +273,7 @@ static status check_output(reader *r)
         for (int k = 0; k < list[l].count; k++) {
             int node = document_at(r->document, "output.%s[%d]", list[l].key, k);
             TRY(check_output_word(r, list[l].known, list[l].kind, node, list[l].word[k]));
+            TRY(check_bond_output(r, node, list[l].word[k]));
             for (int j = 0; j < k; j++)
                 if (strcmp(list[l].word[j], list[l].word[k]) == 0)
                     return document_fail(r->document, node, r->why, "the %s `%s` is listed twice", list[l].kind, list[l].word[k]);

@@ -93,6 +93,8 @@ static const parameter item_rows[] = {
      .doc = "angular velocity"},
     {.key = "temperature_k", .type = PARAMETER_NUMBER, .unit = "K", POSITIVE, .keep = true, .shown = "the group's",
      AT(particle_item, temperature_k), .doc = "temperature"},
+    {.key = "scalar", .type = PARAMETER_NUMBER, .low = -INFINITY, .high = INFINITY, .keep = true, .shown = "the group's",
+     AT(particle_item, scalar), .doc = "a scalar, such as a concentration"},
     {0},
 };
 const section item_section = {.name = "particle item", .doc = "One particle of a list.", .row = item_rows};
@@ -143,6 +145,8 @@ static const parameter group_rows[] = {
      .doc = "the temperature is free; or it is as `temperature_k` prescribes; or it is free and `heat_flux_w` heats"},
     {.key = "heat_flux_w", .type = PARAMETER_NUMBER, .unit = "W", AT(particle_group, heat_flux_w),
      .doc = "with `thermal: flux`: heat into each particle"},
+    {.key = "scalar", .type = PARAMETER_NUMBER, .low = -INFINITY, .high = INFINITY, .fallback = "0", AT(particle_group, scalar),
+     .doc = "a scalar that a bond criterion looks at, such as a concentration, where the generator gives none"},
     {.key = "items", .type = PARAMETER_OTHER, .read = read_items, .required = true, .only = "list", .form = "list of particle items",
      .doc = "the particles"},
     {.key = "count", .type = PARAMETER_INTEGER, .required = true, .low = 0, .high = 2e9, .only = "random", AT(particle_group, count),

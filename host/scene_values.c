@@ -108,6 +108,16 @@ status finish_interaction(reader *r, int node, void *target)
     if (damping && document_find(r->document, node, property_restitution.key))
         return document_fail(r->document, damping, r->why,
                              "an interaction gives both `restitution` and `normal_damping_ratio`, which say the same thing; keep one");
+    const property *const adhesion[] = {&property_bond_stiffness, &property_bond_equilibrium_overlap, &property_bond_normalised_stiffness,
+                                        &property_bond_equilibrium_strain};
+    const char *first = NULL;
+    for (size_t k = 0; k < sizeof adhesion / sizeof *adhesion; k++) {
+        int found = document_find(r->document, node, adhesion[k]->key);
+        if (found && first)
+            return document_fail(r->document, found, r->why, "an interaction gives both `%s` and `%s`, which say the same thing; keep one", first,
+                                 adhesion[k]->key);
+        first = found ? adhesion[k]->key : first;
+    }
     return STATUS_OK;
 }
 
@@ -299,6 +309,7 @@ status read_items(reader *r, const parameter *row, int node, void *target)
         memcpy(item->velocity_m_s, group->velocity_m_s, sizeof item->velocity_m_s);
         memcpy(item->spin_rad_s, group->spin_rad_s, sizeof item->spin_rad_s);
         item->temperature_k = group->temperature_k;
+        item->scalar = group->scalar;
         TRY(parameter_section(r, &item_section, document_item(r->document, node, k), item));
     }
     return STATUS_OK;

@@ -1,5 +1,6 @@
 #include "simulation.h"
 
+#include "bond_figures.h"
 #include "laws/fields.h"
 #include "property.h"
 
@@ -86,6 +87,8 @@ static status upload_bed(simulation *sim, const bed *bed, failure *why)
 {
     TRY(upload_vectors(sim, "position", (const double(*)[3])bed->position, bed->count, why));
     TRY(upload_vectors(sim, "velocity", (const double(*)[3])bed->velocity, bed->count, why));
+    if (store_find(sim, "scalar") && bed->scalar)
+        TRY(store_write(sim, store_find(sim, "scalar")->mem, 0, 8 * (uint64_t)bed->count, bed->scalar, why));
     if (store_find(sim, "spin"))
         TRY(upload_vectors(sim, "spin", (const double(*)[3])bed->spin, bed->count, why));
     TRY(upload_scalars(sim, bed, why));
@@ -168,6 +171,7 @@ status simulation_create(const scene *scene, const bed *bed, device *device, con
     sim->batch_limit = scene->table.batch_steps > 0 ? scene->table.batch_steps : 64;
     sim->batch_limit = sim->batch_limit > BATCH_STEPS_MAX ? BATCH_STEPS_MAX : sim->batch_limit;
     sim->stage = -1;
+    TRY(bond_check(scene, bed, why));
     TRY(check_periods(sim, why));
     TRY(create_bodies(sim, why));
     sim->group_of_id = malloc(sizeof *sim->group_of_id * (size_t)(bed->count + 1));
@@ -399,6 +403,8 @@ status simulation_enter_stage(simulation *sim, int stage, failure *why)
     bool same = sim->program && memcmp(before.law, sim->live.law, sizeof before.law) == 0;
     sim->stage = stage;
     scene_gravity(sim->scene, stage, sim->gravity);
+    if (!sim->live.law[SLOT_BOND])
+        TRY(bonds_before(sim, why)); /* they are forgotten */
     if (!same) {
         launch_close(sim);
         TRY(launch_open(sim, why));
@@ -521,7 +527,9 @@ static status enqueue_batch(simulation *sim, int steps, failure *why)
     cl_kernel pair = launch_kernel(sim, "pair_stage"), particle = launch_kernel(sim, "particle_stage");
     clast_launch launch = launch_values(sim);
     bool halves = live_keeps_half_steps(&sim->live);
+    int bond_step = bonds_step(sim, steps);
     for (int s = 0; s < steps; s++) {
+        launch.bonding = s == bond_step;
         double since = sim->time + (double)(s + 1) * sim->dt - sim->built_time;
         launch.step = s;
         launch.lag = s == 0 ? sim->lag : sim->dt;
@@ -554,12 +562,14 @@ static int steps_before_walls(const simulation *sim, int steps)
 static status run_batch(simulation *sim, int steps, int *done, bool *rebuild, failure *why)
 {
     clast_control control = {steps, 0, {0, 0}};
+    int bonding = bonds_step(sim, steps);
     if (sim->walls_move || sim->groups_move || sim->heat.vary)
         TRY(write_rows(sim, steps, why));
     TRY(store_write(sim, sim->control, 0, sizeof control, &control, why));
     TRY(enqueue_batch(sim, steps, why));
     TRY(store_read(sim, sim->control, 0, sizeof control, &control, why));
     *done = control.halt_step < steps ? control.halt_step : steps;
+    sim->bonding_done = sim->bonding_done || (bonding >= 0 && bonding < *done);
     *rebuild = control.reason != 0;
     return STATUS_OK;
 }

@@ -118,6 +118,8 @@ typedef struct simulation {
     double rebuild_seconds, step_seconds; /* wall time */
     int64_t left_count;
     double left_mass;
+    int64_t bonds_gone;      /* bonds that records had which are no longer in the table */
+    bool bonding_done;       /* contacts have bonded at the time given for it */
     uint64_t bytes;          /* on the device */
 } simulation;
 
@@ -191,6 +193,7 @@ typedef struct live_contact {
     int32_t i, j, wall; /* permanent ids; j -1 at a wall */
     double overlap, area, force[3], torque_wall[3];
     double heat; /* into i, W */
+    bool bonded;
 } live_contact;
 /* Room on the device for `doubles` results of a reduction. */
 status observe_partial(simulation *sim, int64_t doubles, failure *why);
@@ -228,6 +231,16 @@ typedef struct heat_sums {
 } heat_sums;
 status heat_observe(simulation *sim, heat_sums *out, failure *why);
 status heat_limit_find(simulation *sim, heat_limit *out, failure *why);
+/* bonds.c */
+typedef struct bond_sums {
+    int64_t made, broken, alive;
+} bond_sums;
+/* Which of the next steps is the one in which contacts bond at a given time; -1: none. */
+int bonds_step(const simulation *sim, int steps);
+status bonds_count(simulation *sim, bond_sums *out, failure *why);
+/* Around whatever drops records or their histories, so that the bonds they had still count. */
+status bonds_before(simulation *sim, failure *why);
+status bonds_after(simulation *sim, failure *why);
 
 /* guard.c */
 typedef struct guard_finding {

@@ -97,6 +97,10 @@ status state_save(simulation *sim, bundle *out, failure *why)
     bundle_add_i64(out, "run/left_count", sim->left_count);
     bundle_add_f64(out, "run/left_mass", sim->left_mass);
     bundle_add_i64(out, "run/rebuilds", sim->rebuilds);
+    bond_sums bonds;
+    TRY(bonds_count(sim, &bonds, why));
+    bundle_add_i64(out, "run/bonds_made", bonds.made);
+    bundle_add_i64(out, "run/bonding_done", sim->bonding_done);
     save_bodies(sim->wall_body, sim->scene->wall_count, "bodies/walls", out);
     save_bodies(sim->group_body, sim->scene->group_count, "bodies/groups", out);
     int32_t *held = bundle_add(out, "bodies/held", BUNDLE_I32, sim->scene->group_count, 1, NULL);
@@ -259,6 +263,10 @@ static status load_run(simulation *sim, const bundle *in, const char *path, int6
     TRY(load_number(in, path, "run/left_count", BUNDLE_I64, NULL, &sim->left_count, why));
     TRY(load_number(in, path, "run/left_mass", BUNDLE_F64, &sim->left_mass, NULL, why));
     TRY(load_number(in, path, "run/rebuilds", BUNDLE_I64, NULL, &sim->rebuilds, why));
+    int64_t done;
+    TRY(load_number(in, path, "run/bonds_made", BUNDLE_I64, NULL, &sim->bonds_gone, why));
+    TRY(load_number(in, path, "run/bonding_done", BUNDLE_I64, NULL, &done, why));
+    sim->bonding_done = done != 0;
     if (*stage < 0 || *stage >= sim->scene->stage_count)
         return fail(why, STATUS_BAD_INPUT, "%s: run/stage is %lld, the scene has %d stages; the checkpoint is of another scene", path, (long long)*stage,
                     sim->scene->stage_count);
@@ -283,6 +291,9 @@ status state_load(simulation *sim, const bundle *in, const char *path, failure *
         if (sim->field[f].field->extent == PER_PARTICLE && sim->field[f].field->role == FIELD_STATE)
             TRY(load_field(sim, &sim->field[f], in, path, present->data, why));
     replay_motions(sim, (int)stage);
+    int64_t made = sim->bonds_gone; /* of all, with those of the records to come */
     TRY(simulation_enter_stage(sim, (int)stage, why));
-    return load_histories(sim, in, path, why);
+    TRY(load_histories(sim, in, path, why));
+    sim->bonds_gone = made;
+    return bonds_after(sim, why);
 }

@@ -388,6 +388,7 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
     double start = seconds();
     int old_wall_base = t->wall_base;
     int64_t old_stride = t->record_stride, old_capacity = t->record_capacity;
+    TRY(bonds_before(sim, why));
     set_grid(sim, drop_outside);
     TRY(fit_cells(sim, why));
     TRY(store_write(sim, t->grid, 0, sizeof t->grid_host, &t->grid_host, why));
@@ -404,6 +405,7 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
     TRY(carry_histories(sim, old_stride, why));
     TRY(finish(sim, why));
     TRY(fit_spare_generation(sim, old_capacity, why));
+    TRY(bonds_after(sim, why));
     sim->rebuilds++;
     sim->rebuild_seconds += seconds() - start;
     return STATUS_OK;

@@ -21,3 +21,6 @@ const field field_environment = {"environment", PER_SCENE, FIELD_REAL, 1, FIELD_
 const field field_profile = {"profile", PER_SCENE, FIELD_REAL, 1, FIELD_RESULT, "", "the environment along an axis"};
 const field field_wall_heat = {"wall_heat", PER_SCENE, FIELD_REAL, 1, FIELD_RESULT, "", "heat of the faces of walls, a row a step where it varies"};
 const field field_group_heat = {"group_heat", PER_SCENE, FIELD_REAL, 1, FIELD_RESULT, "", "heat of the groups, a row a step where it varies"};
+const field field_bonded = {"bonded", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, "",
+                            "twice the bonds that the contact has had, one less while the last one lives; negative: broken by a strength"};
+const field field_scalar = {"scalar", PER_PARTICLE, FIELD_REAL, 1, FIELD_STATE, "", "a scalar of the grain, such as a concentration"};

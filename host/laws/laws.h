@@ -4,12 +4,32 @@
 #include "../law.h"
 
 extern const law law_hertz, law_linear, law_mindlin, law_coulomb_linear, law_elastic_plastic, law_constant_torque, law_local_damping,
-    law_viscous_damping;
+    law_viscous_damping, law_power, law_adhesion;
+extern const law law_bonding_always, law_bonding_at_time, law_bonding_scalar;
 extern const law law_composition_several, law_periodic_box, law_motion_groups, law_rotation_spin, law_slip_single, law_slip_two,
     law_walls_planes, law_walls_finite, law_orientation_quaternion, law_semi_implicit_euler, law_velocity_verlet, law_velocity_verlet_spin;
 extern const law law_overlap_area, law_newton, law_still_gas, law_nusselt, law_stefan_boltzmann, law_volumetric;
 extern const law law_temperature_grains, law_temperature_pairs, law_substance_several, law_wall_temperature, law_environment_uniform,
     law_environment_profile, law_thermal_groups, law_heat_tally;
+
+/* What pushes two bodies apart: coefficient r*^radius_power d^exponent, as the scene's normal law has it; exponent 0: nothing does. */
+typedef struct repulsion {
+    double coefficient, radius_power, exponent;
+} repulsion;
+repulsion repulsion_of(const contact_class *class);
+
+/* Adhesion of a pair that bonds: coefficient r*^radius_power d^exponent; coefficient 0: the pair does not bond. */
+typedef struct adhesion {
+    double coefficient, radius_power, exponent, damping_ratio;
+} adhesion;
+adhesion adhesion_of(const contact_class *class);
+
+/* Criteria of the bond laws, in the order of their option. */
+enum { BOND_ALWAYS, BOND_AT_TIME, BOND_SCALAR_ABOVE };
+/* Places of the options that every bond law has, in this order. */
+enum { BOND_CRITERION, BOND_TIME, BOND_OWN /* the first that a law adds; of adhesion: its clamps */ };
+/* The law that looks for the criterion of a live bond law. */
+const law *bonding_of(const law *bond, const double *option);
 
 double effective_shear_modulus(const contact_class *class, int mindlin);
 double tangential_damping_ratio(const contact_class *class);

@@ -44,3 +44,24 @@ const law law_linear = {
     .parameters = {"NORMAL_STIFFNESS", "NORMAL_DAMPING"},
     .derive = derive_linear,
 };
+
+static void derive_power(const contact_class *class, const double *option, double *parameter)
+{
+    (void)option;
+    double xi = interaction_value(class, &property_normal_damping);
+    parameter[0] = interaction_value(class, &property_repulsion_stiffness);
+    parameter[1] = interaction_value(class, &property_repulsion_exponent);
+    parameter[2] = isnan(xi) ? 0.0 : 2.0 * xi;
+}
+
+const law law_power = {
+    .name = "power",
+    .slot = SLOT_NORMAL,
+    .doc = "A given power of the overlap, with damping proportional to the critical damping of the tangent stiffness; never attracts. "
+           "Damping by `normal_damping_ratio`; `restitution` is not inverted for it.",
+    .source = "BM Eq. 7",
+    .kernel_file = "effect/normal_power.cl",
+    .interaction_needs = {&property_repulsion_stiffness},
+    .parameters = {"NORMAL_STIFFNESS", "NORMAL_EXPONENT", "NORMAL_DAMPING"},
+    .derive = derive_power,
+};

@@ -15,6 +15,11 @@ static const law *const every_law[] = {
     &law_rotation_spin,
     &law_hertz,
     &law_linear,
+    &law_power,
+    &law_bonding_always,
+    &law_bonding_at_time,
+    &law_bonding_scalar,
+    &law_adhesion,
     &law_slip_single,
     &law_slip_two,
     &law_mindlin,
@@ -67,7 +72,11 @@ static void complete(live_laws *live)
         live->law[SLOT_TANGENTIAL] = &law_mindlin;
     if (live->law[SLOT_TANGENTIAL] && !live->law[SLOT_SLIP])
         live->law[SLOT_SLIP] = &law_slip_single;
-    if (live->law[SLOT_TANGENTIAL] || live->law[SLOT_ROLLING] || live->law[SLOT_ORIENTATION])
+    if (live->law[SLOT_BOND] && !live->law[SLOT_BONDING])
+        live->law[SLOT_BONDING] = &law_bonding_always;
+    if (live->law[SLOT_BONDING] && !live->law[SLOT_BOND])
+        live->law[SLOT_BOND] = &law_adhesion;
+    if ((live->law[SLOT_BOND] && live->law[SLOT_BOND]->turns) || live->law[SLOT_TANGENTIAL] || live->law[SLOT_ROLLING] || live->law[SLOT_ORIENTATION])
         live->law[SLOT_ROTATION] = &law_rotation_spin;
     complete_heat(live);
     const law *verlet = live->law[SLOT_ROTATION] ? &law_velocity_verlet_spin : &law_velocity_verlet;
@@ -401,6 +410,8 @@ static const shared_place places[] = {
     PLACE(clast_launch, face_count),
     PLACE(clast_launch, mover_count),
     PLACE(clast_launch, heat_row),
+    PLACE(clast_launch, bonding),
+    PLACE(clast_launch, spare),
     SIZE(clast_control),
     PLACE(clast_control, halt_step),
     PLACE(clast_control, reason),

@@ -16,7 +16,7 @@ gravity_m_s2: [0, 0, -9.81]
 effects: [EFFECTS]
 materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3}]
 interactions: [{between: default, restitution: 0.5, friction_static: 0.4, friction_dynamic: DYNAMIC, rolling_friction: 0.02,
-                 normal_stiffness_n_m: 1000, tangential_stiffness_n_m: 500}]
+                 bond_equilibrium_strain: 0.01, bond_exponent: EXPONENT, normal_stiffness_n_m: 1000, tangential_stiffness_n_m: 500}]
 particles:
   - {name: bed, material: glass, generator: lattice, lattice: simple_cubic, counts: [5, 5, 5], spacing_m: 2.0e-3, radius_m: 1.0e-3}
 WALLS
@@ -26,6 +26,7 @@ HERTZ = "{slot: normal, law: hertz}"
 MINDLIN = HERTZ + ", {slot: tangential, law: mindlin}"
 LINEAR = "{slot: normal, law: linear}, {slot: tangential, law: coulomb_linear}"
 ROLLING = ", {slot: rolling, law: elastic_plastic}"
+ADHESION = ", {slot: bond, law: adhesion}"
 PLANE = "walls: [{name: floor, shape: plane, point_m: [0, 0, -0.001], normal: [0, 0, 1]}]"
 BOX = "walls: [{name: box, shape: box, low_m: [-0.001, -0.001, -0.001], high_m: [0.01, 0.01, 0.1]}]"
 PERIODIC = "domain: {low_m: [0, 0, -1], high_m: [0.01, 0.01, 1], periodic: [x, y]}"
@@ -63,8 +64,9 @@ class Vectorised(unittest.TestCase):
             return "".join(subprocess.run(["objdump", "-d", "--no-show-raw-insn", o], capture_output=True, text=True, check=True).stdout
                            for o in objects)
 
-    def check(self, effects, walls, dynamic="0.4"):
-        code = self.machine_code(SCENE.replace("EFFECTS", effects).replace("WALLS", walls).replace("DYNAMIC", dynamic))
+    def check(self, effects, walls, dynamic="0.4", exponent="1"):
+        text = SCENE.replace("EFFECTS", effects).replace("WALLS", walls).replace("DYNAMIC", dynamic).replace("EXPONENT", exponent)
+        code = self.machine_code(text)
         roots = len(re.findall(r"vsqrtpd .*%[yz]mm", code))
         divisions = len(re.findall(r"vdivpd .*%[yz]mm", code))
         self.assertGreater(roots, 1, f"{effects}: {len(re.findall('vsqrtsd', code))} scalar roots, no vector ones")
@@ -78,6 +80,9 @@ class Vectorised(unittest.TestCase):
 
     def test_linear_periodic(self):
         self.check(LINEAR, PERIODIC)
+
+    def test_adhesion(self):
+        self.check(MINDLIN + ROLLING + ADHESION, PLANE)
 
 
 if __name__ == "__main__":

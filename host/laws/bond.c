@@ -1,0 +1,175 @@
+#include "../property.h"
+#include "../scene.h"
+#include "fields.h"
+#include "laws.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* No value of a criterion reaches it: such a pair does not bond. */
+#define NEVER 1e30
+
+repulsion repulsion_of(const contact_class *class)
+{
+    const effect *normal = scene_effect(class->scene, -1, SLOT_NORMAL);
+    const char *name = normal ? normal->law->name : "";
+    if (!strcmp(name, "hertz"))
+        return (repulsion){4.0 / 3.0 * effective_modulus(class), 0.5, 1.5};
+    if (!strcmp(name, "linear"))
+        return (repulsion){interaction_value(class, &property_normal_stiffness), 0.0, 1.0};
+    if (!strcmp(name, "power"))
+        return (repulsion){interaction_value(class, &property_repulsion_stiffness), 0.0, interaction_value(class, &property_repulsion_exponent)};
+    return (repulsion){0.0, 0.0, 0.0};
+}
+
+/* BM Eq. 8 solved for the adhesion, k = k2 d_eq^(a2 - a), and Eq. 18 and 19 with strains: all of the form K r*^p. */
+adhesion adhesion_of(const contact_class *class)
+{
+    repulsion push = repulsion_of(class);
+    double a = interaction_value(class, &property_bond_exponent), apart = push.exponent - a;
+    double stiffness = interaction_value(class, &property_bond_stiffness), overlap = interaction_value(class, &property_bond_equilibrium_overlap);
+    double normalised = interaction_value(class, &property_bond_normalised_stiffness);
+    double strain = interaction_value(class, &property_bond_equilibrium_strain), xi = interaction_value(class, &property_bond_damping);
+    adhesion pull = {0.0, 0.0, a, isnan(xi) ? 0.0 : xi};
+    if (!isnan(stiffness))
+        pull.coefficient = stiffness;
+    else if (!isnan(overlap))
+        pull = (adhesion){push.coefficient * pow(overlap, apart), push.radius_power, a, pull.damping_ratio};
+    else if (!isnan(normalised))
+        pull = (adhesion){normalised, -a, a, pull.damping_ratio};
+    else if (!isnan(strain))
+        pull = (adhesion){push.coefficient * pow(strain, apart), push.radius_power + apart, a, pull.damping_ratio};
+    return pull;
+}
+
+/* ---- when contacts bond ---- */
+
+static bool pair_bonds(const contact_class *class)
+{
+    return adhesion_of(class).coefficient > 0.0;
+}
+
+static void derive_bonding(const contact_class *class, const double *option, double *parameter)
+{
+    (void)option;
+    parameter[0] = pair_bonds(class) ? 0.5 : NEVER;
+}
+
+static void derive_bonding_threshold(const contact_class *class, const double *option, double *parameter)
+{
+    (void)option;
+    double threshold = interaction_value(class, &property_bond_threshold);
+    parameter[0] = pair_bonds(class) && !isnan(threshold) ? threshold : NEVER;
+}
+
+const law law_bonding_always = {
+    .name = "always",
+    .slot = SLOT_BONDING,
+    .doc = "Every contact may bond.",
+    .source = "BM Eq. 25",
+    .kernel_file = "effect/bonding_always.cl",
+    .parameters = {"BONDING_THRESHOLD"},
+    .derive = derive_bonding,
+};
+
+const law law_bonding_at_time = {
+    .name = "at_time",
+    .slot = SLOT_BONDING,
+    .doc = "The contacts of one moment bond, and no others.",
+    .source = "",
+    .kernel_file = "effect/bonding_at_time.cl",
+    .parameters = {"BONDING_THRESHOLD"},
+    .derive = derive_bonding,
+};
+
+const law law_bonding_scalar = {
+    .name = "scalar_above",
+    .slot = SLOT_BONDING,
+    .doc = "Contacts bond while the scalar of both grains is above a threshold.",
+    .source = "BM sec. 3 (a concentration)",
+    .kernel_file = "effect/bonding_scalar.cl",
+    .pair_fields = {&field_scalar},
+    .parameters = {"BONDING_THRESHOLD"},
+    .derive = derive_bonding_threshold,
+};
+
+const law *bonding_of(const law *bond, const double *option)
+{
+    static const law *const all[] = {&law_bonding_always, &law_bonding_at_time, &law_bonding_scalar};
+    return bond ? all[(int)option[BOND_CRITERION]] : NULL;
+}
+
+#define BOND_OPTIONS                                                                                                                             \
+    {"criterion", "always|at_time|scalar_above", 0, 0, 0,                                                                                         \
+     "when a contact bonds: whenever it can, at `time_s` alone, or while the `scalar` of both grains is above `bond_threshold`"},                 \
+        {"time_s", NULL, 0, 1e30, 0, "the moment of `at_time`: the first step that starts then or later"}
+
+/* ---- adhesion ---- */
+
+enum { ADHESION_CLAMPS = BOND_OWN };
+
+static void derive_adhesion(const contact_class *class, const double *option, double *parameter)
+{
+    (void)option;
+    adhesion pull = adhesion_of(class);
+    parameter[0] = pull.coefficient;
+    parameter[1] = pull.radius_power;
+    parameter[2] = pull.exponent;
+    parameter[3] = 2.0 * pull.damping_ratio;
+    parameter[4] = fmin(M_PI * interaction_value(class, &property_bond_tensile_strength), 1e30);
+    parameter[5] = fmin(M_PI * interaction_value(class, &property_bond_shear_strength), 1e15); /* its square stays a number in float */
+}
+
+static void adhesion_constants(const double *option, char *text, size_t size)
+{
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "#define ADHESION_CLAMPS %d\n", option[ADHESION_CLAMPS] == 0.0);
+}
+
+/* Exponents of all contacts that bond, in quarters, where they are whole numbers and the same; false where they are not. */
+static bool shared_quarters(const struct scene *scene, int *exponent, int *radius)
+{
+    int found = 0;
+    for (int s = 0; scene->material && s < scene->stage_count; s++)
+        for (int a = 0; a < scene->material_count; a++)
+            for (int p = 0; p < scene->material_count + scene->wall_count; p++) {
+                bool wall = p >= scene->material_count;
+                adhesion pull = adhesion_of(&(contact_class){scene, s, a, wall ? -1 : p, wall ? p - scene->material_count : -1});
+                double n = 4.0 * pull.exponent, m = 4.0 * pull.radius_power;
+                if (pull.coefficient == 0.0)
+                    continue;
+                if (fabs(n - round(n)) > 1e-12 || fabs(m - round(m)) > 1e-12 || n > 31.0 || fabs(m) > 31.0)
+                    return false;
+                if (found++ > 0 && ((int)round(n) != *exponent || (int)round(m) != *radius))
+                    return false;
+                *exponent = (int)round(n);
+                *radius = (int)round(m);
+            }
+    return found > 0;
+}
+
+static void adhesion_scene_constants(const struct scene *scene, char *text, size_t size)
+{
+    int exponent = 4, radius = 0;
+    size_t used = strlen(text);
+    bool shared = shared_quarters(scene, &exponent, &radius);
+    snprintf(text + used, size - used, "#define ADHESION_SHARED %d\n#define ADHESION_QUARTERS %d\n#define ADHESION_RADIUS_QUARTERS (%d)\n", shared,
+             exponent, radius);
+}
+
+const law law_adhesion = {
+    .name = "adhesion",
+    .slot = SLOT_BOND,
+    .doc = "Attraction k d^a against the repulsion of the normal law once a contact is deep enough, damped about its equilibrium.",
+    .source = "BM Eq. 7 to 26 as settled in docs/theory.md",
+    .kernel_file = "effect/bond_adhesion.cl",
+    .options = {BOND_OPTIONS,
+                {"clamps", "printed|none", 0, 0, 0,
+                 "as printed, no net pull beyond the equilibrium overlap and no net push short of it, or spring and damper as they add up"}},
+    .pair_fields = {&field_bonded},
+    .parameters = {"ADHESION_STIFFNESS", "ADHESION_RADIUS_POWER", "ADHESION_EXPONENT", "ADHESION_DAMPING", "ADHESION_TENSILE", "ADHESION_SHEAR"},
+    .derive = derive_adhesion,
+    .constants = adhesion_constants,
+    .scene_constants = adhesion_scene_constants,
+};

@@ -1,0 +1,6 @@
+/* bonding: contacts bond in one step of the run, and in no other. Reads BONDING_THRESHOLD. */
+#ifndef BONDING_THRESHOLD
+#define BONDING_THRESHOLD 0
+#endif
+#define BONDING_PAIR_FIELDS(READ, WRITE)
+#define BONDING_LOAD(launch, k) ((launch)->bonding != 0 ? R(1.0) : R(0.0))
