@@ -193,7 +193,12 @@ static status check_pair(const contact_class *class, double ri, double rj, failu
     const char *a = s->material[class->material_a].name, *b = wall ? s->wall[class->wall].name : s->material[class->material_b].name;
     bonded_pair pair;
     if (!make_pair(class, ri, rj, &pair))
-        return STATUS_OK;
+        return STATUS_OK; /* no bond, no questions */
+    if (bond->option[BOND_CRITERION] >= BOND_SCALAR_ABOVE && isnan(interaction_value(class, &property_bond_threshold)))
+        return fail(why, STATUS_BAD_INPUT,
+                    "%s:%d:%d: effects[bond]: `%s` and `%s` can bond, and the criterion needs to know above which value: add `bond_threshold` to "
+                    "their entry under `interactions` or to `default`",
+                    s->path, bond->at.line, bond->at.column, a, b);
     if (!(pair.a < pair.a2))
         return fail(why, STATUS_BAD_INPUT,
                     "%s:%d:%d: effects[bond]: between `%s` and `%s` the exponent of adhesion must be below that of repulsion, and it is not: "

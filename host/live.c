@@ -122,7 +122,6 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         out->law[SLOT_MOTION] = &law_motion_groups;
     if (turning)
         out->law[SLOT_ROTATION] = &law_rotation_spin;
-    out->law[SLOT_BONDING] = bonding_of(out->law[SLOT_BOND], out->option[SLOT_BOND]);
     if (out->law[SLOT_TANGENTIAL])
         out->law[SLOT_SLIP] = two_frictions(scene) ? &law_slip_two : &law_slip_single;
     if (scene->wall_count > 0)
@@ -131,6 +130,8 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         out->law[SLOT_ORIENTATION] = &law_orientation_quaternion;
     const law *verlet = turning ? &law_velocity_verlet_spin : &law_velocity_verlet;
     out->law[SLOT_INTEGRATOR] = scene->integrator == INTEGRATOR_VELOCITY_VERLET ? verlet : &law_semi_implicit_euler;
+    out->law[SLOT_BONDING] = bonding_of(out->law[SLOT_BOND], out->option[SLOT_BOND]);
+    out->option[SLOT_BONDING] = out->option[SLOT_BOND];
     if (scene_has_temperature(scene))
         derive_heat(scene, out);
 }
@@ -143,14 +144,14 @@ void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, liv
             out->law[slot] = NULL;
     if (!out->law[SLOT_TANGENTIAL])
         out->law[SLOT_SLIP] = NULL;
+    if (!out->law[SLOT_BOND])
+        out->law[SLOT_BONDING] = NULL;
     if (out->law[SLOT_TEMPERATURE])
         out->law[SLOT_TEMPERATURE] = temperature_law(out);
     if (!out->law[SLOT_CONDUCTION])
         out->law[SLOT_WALL_HEAT] = NULL;
     if (!out->law[SLOT_CONVECTION] && !out->law[SLOT_RADIATION])
         out->law[SLOT_ENVIRONMENT] = NULL;
-    if (!out->law[SLOT_BOND])
-        out->law[SLOT_BONDING] = NULL;
 }
 
 /* The file that fills a slot when no law does. */

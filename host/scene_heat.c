@@ -1,6 +1,7 @@
 /* Heat in a scene: whether there is a temperature, what a wall's is in a stage, and checks over several keys. */
 #include "scene_check.h"
 
+#include "laws/laws.h"
 #include "property.h"
 #include "scene_table.h"
 
@@ -36,7 +37,8 @@ bool scene_has_temperature(const scene *s)
     for (size_t k = 0; k < sizeof names / sizeof *names; k++)
         if (scene_outputs(s, names[k]))
             return true;
-    return scene_has_heat(s) || scene_tallies_heat(s);
+    const effect *bond = scene_effect(s, -1, SLOT_BOND);
+    return scene_has_heat(s) || scene_tallies_heat(s) || (bond && bonding_reads_temperature(bond->law, bond->option));
 }
 
 bool scene_tallies_heat(const scene *s)

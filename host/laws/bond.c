@@ -94,15 +94,40 @@ const law law_bonding_scalar = {
     .derive = derive_bonding_threshold,
 };
 
+static void temperature_constants(const double *option, char *text, size_t size)
+{
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "#define BONDING_TEMPERATURE %d\n", (int)option[BOND_CRITERION] - BOND_BOTH_ABOVE);
+}
+
+const law law_bonding_temperature = {
+    .name = "temperature_above",
+    .slot = SLOT_BONDING,
+    .doc = "Contacts bond while the temperatures of their bodies are above a threshold: both, their mean, or the higher one.",
+    .source = "BM sec. 3",
+    .kernel_file = "effect/bonding_temperature.cl",
+    .parameters = {"BONDING_THRESHOLD"},
+    .derive = derive_bonding_threshold,
+    .constants = temperature_constants,
+    .reads_temperature = true,
+};
+
+bool bonding_reads_temperature(const law *bond, const double *option)
+{
+    return bond && (int)option[BOND_CRITERION] >= BOND_BOTH_ABOVE;
+}
+
 const law *bonding_of(const law *bond, const double *option)
 {
-    static const law *const all[] = {&law_bonding_always, &law_bonding_at_time, &law_bonding_scalar};
+    static const law *const all[] = {&law_bonding_always, &law_bonding_at_time, &law_bonding_scalar, &law_bonding_temperature, &law_bonding_temperature,
+                                     &law_bonding_temperature};
     return bond ? all[(int)option[BOND_CRITERION]] : NULL;
 }
 
 #define BOND_OPTIONS                                                                                                                             \
-    {"criterion", "always|at_time|scalar_above", 0, 0, 0,                                                                                         \
-     "when a contact bonds: whenever it can, at `time_s` alone, or while the `scalar` of both grains is above `bond_threshold`"},                 \
+    {"criterion", "always|at_time|scalar_above|both_above|mean_above|hottest_above", 0, 0, 0,                                                                                         \
+     "when a contact bonds: whenever it can; at `time_s` alone; or while something is above `bond_threshold`: the `scalar` of both grains, "      \
+     "both temperatures, their mean, or the higher one"},                                                                                         \
         {"time_s", NULL, 0, 1e30, 0, "the moment of `at_time`: the first step that starts then or later"}
 
 /* ---- adhesion ---- */

@@ -5,7 +5,7 @@
 
 extern const law law_hertz, law_linear, law_mindlin, law_coulomb_linear, law_elastic_plastic, law_constant_torque, law_local_damping,
     law_viscous_damping, law_power, law_adhesion;
-extern const law law_bonding_always, law_bonding_at_time, law_bonding_scalar;
+extern const law law_bonding_always, law_bonding_at_time, law_bonding_scalar, law_bonding_temperature;
 extern const law law_composition_several, law_periodic_box, law_motion_groups, law_rotation_spin, law_slip_single, law_slip_two,
     law_walls_planes, law_walls_finite, law_orientation_quaternion, law_semi_implicit_euler, law_velocity_verlet, law_velocity_verlet_spin;
 extern const law law_overlap_area, law_newton, law_still_gas, law_nusselt, law_stefan_boltzmann, law_volumetric;
@@ -25,10 +25,11 @@ typedef struct adhesion {
 adhesion adhesion_of(const contact_class *class);
 
 /* Criteria of the bond laws, in the order of their option. */
-enum { BOND_ALWAYS, BOND_AT_TIME, BOND_SCALAR_ABOVE };
+enum { BOND_ALWAYS, BOND_AT_TIME, BOND_SCALAR_ABOVE, BOND_BOTH_ABOVE, BOND_MEAN_ABOVE, BOND_HOTTEST_ABOVE };
 /* Places of the options that every bond law has, in this order. */
 enum { BOND_CRITERION, BOND_TIME, BOND_OWN /* the first that a law adds; of adhesion: its clamps */ };
 /* The law that looks for the criterion of a live bond law. */
+bool bonding_reads_temperature(const law *bond, const double *option);
 const law *bonding_of(const law *bond, const double *option);
 
 double effective_shear_modulus(const contact_class *class, int mindlin);

@@ -88,7 +88,7 @@ INLINE void bond_normal(const contact *c, bond_state *s, response *out)
     real net = out->spring - pull;
     real damper = c->value[ADHESION_DAMPING] * sqrt(c->mass_eff * (holds ? tangent : R(0.0))) * c->approach;
     real lived = bond_lives(s->count);
-    bool may = s->bonding > c->value[BONDING_THRESHOLD] && s->count >= R(0.0);
+    bool may = bonding_value(c, s->bonding) > c->value[BONDING_THRESHOLD] && s->count >= R(0.0);
     bool torn = -net > c->value[ADHESION_TENSILE] * c->radius_eff * c->overlap;
     bool lives = holds && !torn && (lived > R(0.5) || may);
     real force = net + damper;

@@ -338,6 +338,33 @@ static void test_scalar_and_time(void **state)
     assert_true(deep);
 }
 
+/* Temperatures 900 K and 1100 K, and a threshold between, on either side of the mean. */
+static void test_temperatures(void **state)
+{
+    (void)state;
+    const struct {
+        const char *criterion;
+        double threshold;
+        int bonds;
+    } row[] = {{"both_above", 890, 1}, {"both_above", 910, 0}, {"mean_above", 990, 1}, {"mean_above", 1010, 0}, {"hottest_above", 1090, 1},
+               {"hottest_above", 1110, 0}};
+    for (int n = 0; n < COUNT_OF(row); n++) {
+        char effects[256];
+        snprintf(effects, sizeof effects, "{slot: normal, law: hertz}, {slot: bond, law: adhesion, criterion: %s}", row[n].criterion);
+        text t = {0};
+        put(&t, "effects: [%s]\nmaterials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: 0, specific_heat_j_kgk: 100}]\n", effects,
+            density, young);
+        put(&t, "interactions: [{between: default, bond_equilibrium_overlap_m: %.17g, bond_damping_ratio: 1, bond_threshold: %g}]\n", equilibrium,
+            row[n].threshold);
+        put(&t, "particles: [{name: p, material: m, generator: list, items: [{radius_m: 0.001, position_m: [0, 0, 0], temperature_k: 900}, {radius_m: "
+                "0.001, position_m: [0.00196, 0, 0], temperature_k: 1100}]}]\n");
+        physics_case c = case_open(&t);
+        case_run(&c, 1000, 2e-7);
+        assert_int_equal(bonds_of(&c).alive, row[n].bonds);
+        case_close(&c);
+    }
+}
+
 /* ---- energy, momentum, symmetry ---- */
 
 static void test_energy_never_rises(void **state)
@@ -525,6 +552,8 @@ static void test_refused(void **state)
             "bond_exponent 1 >= 1 of");
     refused(ADHESION, "{between: default, bond_equilibrium_overlap_m: 3e-4}", "0.3 of the radius");
     refused(ADHESION, "{between: default, bond_equilibrium_overlap_m: 3e-5, bond_stiffness: 1e5}", "keep one");
+    refused("{slot: normal, law: hertz}, {slot: bond, law: adhesion, criterion: scalar_above}", "{between: default, bond_equilibrium_overlap_m: 3e-5}",
+            "add `bond_threshold`");
     refused("{slot: bond, law: adhesion}", "{between: default, bond_equilibrium_overlap_m: 3e-5}", "needs a normal law");
 }
 
@@ -554,7 +583,7 @@ int main(void)
         cmocka_unit_test(test_wall_and_weight),   cmocka_unit_test(test_critical_velocity),
         cmocka_unit_test(test_breaks_again),      cmocka_unit_test(test_pull_off),
         cmocka_unit_test(test_strengths),         cmocka_unit_test(test_scalar_and_time),
-        cmocka_unit_test(test_energy_never_rises), cmocka_unit_test(test_cluster_keeps_momentum),
+        cmocka_unit_test(test_temperatures),      cmocka_unit_test(test_energy_never_rises), cmocka_unit_test(test_cluster_keeps_momentum),
         cmocka_unit_test(test_swapped),           cmocka_unit_test(test_bits),
         cmocka_unit_test(test_refused),           cmocka_unit_test(test_step_limit),
     };

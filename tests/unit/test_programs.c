@@ -19,6 +19,7 @@ static const law *const every_law[] = {
     &law_bonding_always,
     &law_bonding_at_time,
     &law_bonding_scalar,
+    &law_bonding_temperature,
     &law_adhesion,
     &law_slip_single,
     &law_slip_two,
@@ -61,7 +62,7 @@ static void complete_heat(live_laws *live)
     static const slot_id thermal[] = {SLOT_SUBSTANCE, SLOT_CONDUCTION, SLOT_ENVIRONMENT, SLOT_HEAT_GENERATION, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY};
     for (size_t n = 0; n < sizeof thermal / sizeof *thermal; n++)
         if (live->law[thermal[n]] && (!live->law[SLOT_TEMPERATURE] || thermal[n] == SLOT_CONDUCTION))
-            live->law[SLOT_TEMPERATURE] = live->law[SLOT_CONDUCTION] ? &law_temperature_pairs : &law_temperature_grains;
+            live->law[SLOT_TEMPERATURE] = live->law[SLOT_CONDUCTION] || live->law[SLOT_BONDING] == &law_bonding_temperature ? &law_temperature_pairs : &law_temperature_grains;
 }
 
 /* What a scene derives from the laws that it names: friction and rolling turn grains, a friction law comes with a spring and the reverse. */
@@ -78,6 +79,8 @@ static void complete(live_laws *live)
         live->law[SLOT_BOND] = &law_adhesion;
     if ((live->law[SLOT_BOND] && live->law[SLOT_BOND]->turns) || live->law[SLOT_TANGENTIAL] || live->law[SLOT_ROLLING] || live->law[SLOT_ORIENTATION])
         live->law[SLOT_ROTATION] = &law_rotation_spin;
+    if (live->law[SLOT_BONDING] == &law_bonding_temperature)
+        live->law[SLOT_TEMPERATURE] = &law_temperature_pairs;
     complete_heat(live);
     const law *verlet = live->law[SLOT_ROTATION] ? &law_velocity_verlet_spin : &law_velocity_verlet;
     live->law[SLOT_INTEGRATOR] = live->law[SLOT_INTEGRATOR] ? verlet : &law_semi_implicit_euler;
