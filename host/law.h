@@ -57,7 +57,7 @@ typedef struct law_option {
 #define LAW_ARGUMENTS_MAX 8
 #define LAW_PARAMETERS_MAX 8
 #define LAW_PROPERTIES_MAX 8
-#define LAW_FILES_MAX 2
+#define LAW_FILES_MAX 3
 
 typedef enum field_extent { PER_PARTICLE, PER_RECORD, PER_SCENE /* faces of walls, prescribed motions: the host keeps them */ } field_extent;
 typedef enum field_type { FIELD_REAL, FIELD_INT } field_type;

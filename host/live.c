@@ -37,12 +37,18 @@ static bool any_spin(const bed *bed)
     return false;
 }
 
-static bool any_finite_wall(const scene *scene)
+/* The least of the three that knows every shape of the scene. */
+static const law *wall_law(const scene *scene)
 {
-    for (int w = 0; w < scene->wall_count; w++)
-        if (scene->wall[w].shape != WALL_PLANE)
-            return true;
-    return false;
+    const law *least = scene->wall_count > 0 ? &law_walls_planes : NULL;
+    for (int w = 0; w < scene->wall_count; w++) {
+        wall_shape shape = scene->wall[w].shape;
+        if (shape == WALL_CYLINDER || shape == WALL_CONE)
+            return &law_walls_round;
+        if (shape != WALL_PLANE)
+            least = &law_walls_finite;
+    }
+    return least;
 }
 
 /* Static and dynamic friction differ somewhere, in some stage. */
@@ -124,8 +130,7 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         out->law[SLOT_ROTATION] = &law_rotation_spin;
     if (out->law[SLOT_TANGENTIAL])
         out->law[SLOT_SLIP] = two_frictions(scene) ? &law_slip_two : &law_slip_single;
-    if (scene->wall_count > 0)
-        out->law[SLOT_WALLS] = any_finite_wall(scene) ? &law_walls_finite : &law_walls_planes;
+    out->law[SLOT_WALLS] = wall_law(scene);
     if (scene_outputs(scene, "orientation"))
         out->law[SLOT_ORIENTATION] = &law_orientation_quaternion;
     const law *verlet = turning ? &law_velocity_verlet_spin : &law_velocity_verlet;

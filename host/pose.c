@@ -191,6 +191,8 @@ clast_mover moving_body_step(const moving_body *body, double t, double dt)
 
 int wall_face_count(const wall *wall)
 {
+    if (wall->shape == WALL_CONE)
+        return 2; /* a wedged sphere touches it on both sides of the axis */
     if (wall->shape != WALL_BOX)
         return 1;
     int count = 0;
@@ -240,19 +242,36 @@ static void set_box_face(const wall *wall, int side, clast_face *face)
     set_rectangle(face, centre, a, b);
 }
 
-static void set_flat(const wall *wall, clast_face *face)
+/* Two unit vectors square to n and to one another. */
+static void set_frame(const double *n, clast_face *face)
 {
-    bool disc = wall->shape == WALL_DISC;
-    const double *n = wall->normal;
     double pick[3] = {0, 0, 0};
     pick[fabs(n[0]) < 0.6 ? 0 : 1] = 1.0;
-    face->shape = disc ? CLAST_FACE_DISC : CLAST_FACE_PLANE;
-    face->extent[0] = disc ? wall->radius_m : 0.0;
-    memcpy(face->origin, disc ? wall->center_m : wall->point_m, sizeof face->origin);
     memcpy(face->normal, n, sizeof face->normal);
     cross(n, pick, face->e1);
     normalise(face->e1);
     cross(n, face->e1, face->e2);
+}
+
+static void set_flat(const wall *wall, clast_face *face)
+{
+    bool disc = wall->shape == WALL_DISC;
+    face->shape = disc ? CLAST_FACE_DISC : CLAST_FACE_PLANE;
+    face->extent[0] = disc ? wall->radius_m : 0.0;
+    memcpy(face->origin, disc ? wall->center_m : wall->point_m, sizeof face->origin);
+    set_frame(wall->normal, face);
+}
+
+static void set_round(const wall *wall, bool far, clast_face *face)
+{
+    double widen = wall->radii_m[1] - wall->radii_m[0];
+    face->shape = far ? CLAST_FACE_ROUND_FAR : CLAST_FACE_ROUND;
+    memcpy(face->origin, wall->axis_point_m, sizeof face->origin);
+    memcpy(face->extent, wall->radii_m, sizeof face->extent);
+    face->slant_length = hypot(wall->length_m, widen);
+    face->slant[0] = wall->length_m / face->slant_length;
+    face->slant[1] = widen / face->slant_length;
+    set_frame(wall->axis, face);
 }
 
 static void set_rectangle_wall(const wall *wall, clast_face *face)
@@ -289,6 +308,9 @@ void wall_faces(const wall *wall, const body_pose *pose, int party, int wall_ind
                 set_box_face(wall, side, &out[f++]);
     } else if (wall->shape == WALL_RECTANGLE) {
         set_rectangle_wall(wall, out);
+    } else if (wall->shape == WALL_CYLINDER || wall->shape == WALL_CONE) {
+        for (int f = 0; f < count; f++)
+            set_round(wall, f == 1, &out[f]);
     } else {
         set_flat(wall, out);
     }

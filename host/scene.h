@@ -149,6 +149,9 @@ typedef struct wall {
     bool open[6];                      /* x_low x_high y_low y_high z_low z_high */
     double corners_m[3][3];            /* rectangle: a corner and its two neighbours */
     double center_m[3], radius_m;      /* disc */
+    bool outside;                      /* cylinder, cone: side on which the grains are */
+    double axis_point_m[3], axis[3];   /* their first end, and the unit vector to the other */
+    double radii_m[2], length_m;       /* radii at both ends */
     motion_list motion;
     wall_heat heat;
     place at;

@@ -28,6 +28,7 @@ status read_group(reader *r, const parameter *row, int node, void *target);
 status read_radius(reader *r, const parameter *row, int node, void *target);
 status read_items(reader *r, const parameter *row, int node, void *target);
 status read_sieve_sizes(reader *r, const parameter *row, int node, void *target);
+status read_cone_radii(reader *r, const parameter *row, int node, void *target);
 status read_corners(reader *r, const parameter *row, int node, void *target);
 status read_file(reader *r, const parameter *row, int node, void *target);
 status read_motion(reader *r, const parameter *row, int node, void *target);

@@ -352,6 +352,26 @@ status read_corners(reader *r, const parameter *row, int node, void *target)
     return STATUS_OK;
 }
 
+status read_cone_radii(reader *r, const parameter *row, int node, void *target)
+{
+    wall *out = target;
+    double *radius = NULL;
+    char what[128];
+    int count = 0;
+    if (!document_is_list(r->document, node) || document_length(r->document, node) != 2)
+        return document_fail(r->document, node, r->why, "`%s` of a cone must be two numbers, [radius at the first end, at the other]; it is %s",
+                             row->key, document_describe(r->document, node, what, sizeof what));
+    status result = parameter_numbers(r, row, node, &radius, &count);
+    if (result == STATUS_OK)
+        memcpy(out->radii_m, radius, sizeof out->radii_m);
+    free(radius);
+    TRY(result);
+    if (out->radii_m[0] == out->radii_m[1])
+        return document_fail(r->document, node, r->why, "both radii of the cone are %g m; write `shape: cylinder` with one radius, above 0",
+                             out->radii_m[0]);
+    return STATUS_OK;
+}
+
 static status check_rectangle(reader *r, int node, const wall *w)
 {
     int corners = document_find(r->document, node, "corners_m");
@@ -384,6 +404,21 @@ static status check_corners(reader *r, int node, const double low[3], const doub
     return STATUS_OK;
 }
 
+static status check_planar_round(reader *r, int node, const wall *w)
+{
+    if (w->shape == WALL_CONE)
+        return document_fail(r->document, document_find(r->document, node, "shape"), r->why,
+                             "with `dimensions: 2` a cone's normals leave the x-y plane; use a cylinder along z, or rectangles");
+    if (fabs(w->axis[2]) != 1.0)
+        return document_fail(r->document, document_find(r->document, node, "axis"), r->why,
+                             "with `dimensions: 2` the axis of a cylinder must lie along z: [0, 0, 1]");
+    double end = w->axis_point_m[2] + w->axis[2] * w->length_m;
+    if (fmin(w->axis_point_m[2], end) >= 0.0 || fmax(w->axis_point_m[2], end) <= 0.0)
+        return document_fail(r->document, document_find(r->document, node, "axis_point_m"), r->why,
+                             "with `dimensions: 2` a cylinder must pass through z = 0; it runs from z = %g to %g", w->axis_point_m[2], end);
+    return STATUS_OK;
+}
+
 status finish_wall(reader *r, int node, void *target)
 {
     wall *w = target;
@@ -391,6 +426,10 @@ status finish_wall(reader *r, int node, void *target)
     TRY(check_wall_heat(r, node, &w->heat));
     if (w->shape == WALL_RECTANGLE)
         return check_rectangle(r, node, w);
+    if (w->shape == WALL_CYLINDER)
+        w->radii_m[1] = w->radii_m[0];
+    if (w->shape == WALL_CYLINDER || w->shape == WALL_CONE)
+        return planar ? check_planar_round(r, node, w) : STATUS_OK;
     if (w->shape == WALL_BOX) {
         if (planar)
             w->open[4] = w->open[5] = true;

@@ -48,6 +48,24 @@ static status check_periods(const simulation *sim, failure *why)
     return STATUS_OK;
 }
 
+/* A sphere touches a cylinder that it just fits into all along a circle, and no cone holds one that its wider end does not let in. */
+static status check_round_walls(const simulation *sim, failure *why)
+{
+    for (int w = 0; w < sim->scene->wall_count; w++) {
+        const wall *wall = &sim->scene->wall[w];
+        if ((wall->shape != WALL_CYLINDER && wall->shape != WALL_CONE) || wall->outside)
+            continue;
+        double wide = fmax(wall->radii_m[0], wall->radii_m[1]), widen = wall->radii_m[1] - wall->radii_m[0];
+        double most = wide * wall->length_m / hypot(wall->length_m, widen);
+        if (sim->radius_max >= most)
+            return fail(why, STATUS_BAD_INPUT,
+                        "%s:%d:%d: the wall `%s` holds spheres of a radius below %g m inside; the largest particle has %g m; "
+                        "widen the wall, or write `side: outside` if it stands beside the particles",
+                        sim->scene->path, wall->at.line, wall->at.column, wall->name, most, sim->radius_max);
+    }
+    return STATUS_OK;
+}
+
 static status upload_vectors(simulation *sim, const char *name, const double (*value)[3], int64_t count, failure *why)
 {
     return store_write(sim, store_find(sim, name)->mem, 0, 24 * (uint64_t)count, value, why);
@@ -173,6 +191,7 @@ status simulation_create(const scene *scene, const bed *bed, device *device, con
     sim->stage = -1;
     TRY(bond_check(scene, bed, why));
     TRY(check_periods(sim, why));
+    TRY(check_round_walls(sim, why));
     TRY(create_bodies(sim, why));
     sim->group_of_id = malloc(sizeof *sim->group_of_id * (size_t)(bed->count + 1));
     if (!sim->group_of_id || !sim->group_held)
@@ -267,6 +286,25 @@ status simulation_pose_now(simulation *sim, failure *why)
     return write_rows(sim, 1, why);
 }
 
+/* A cylinder, a cone or a disc is where its axis is: to turn about that moves nothing. False: not such a wall. */
+static bool round_travel(const wall *wall, const body_pose *before, const body_pose *now, double *out)
+{
+    bool disc = wall->shape == WALL_DISC;
+    if (!disc && wall->shape != WALL_CYLINDER && wall->shape != WALL_CONE)
+        return false;
+    double a[3], b[3], e[3], f[3], moved = 0.0, tilted = 0.0;
+    pose_point(before, disc ? wall->center_m : wall->axis_point_m, a);
+    pose_point(now, disc ? wall->center_m : wall->axis_point_m, b);
+    pose_vector(before, disc ? wall->normal : wall->axis, e);
+    pose_vector(now, disc ? wall->normal : wall->axis, f);
+    for (int c = 0; c < 3; c++) {
+        moved += (b[c] - a[c]) * (b[c] - a[c]);
+        tilted += (f[c] - e[c]) * (f[c] - e[c]);
+    }
+    *out = sqrt(moved) + sqrt(tilted) * (disc ? wall->radius_m : wall->length_m + fmax(wall->radii_m[0], wall->radii_m[1]));
+    return true;
+}
+
 /* How far a wall may have moved, against the common drift, since the table was built: an upper bound over what the bed can touch. */
 static double wall_travel(const simulation *sim, double time)
 {
@@ -277,6 +315,10 @@ static double wall_travel(const simulation *sim, double time)
         const moving_body *body = &sim->wall_body[w];
         body_pose before = moving_body_pose(body, sim->built_time), now = moving_body_pose(body, time);
         double centre[3], a[3], b[3], apart = 0.0, speed = 0.0, turn = 0.0, reach = 0.0;
+        if (round_travel(&sim->scene->wall[w], &before, &now, &turn)) {
+            most = fmax(most, turn); /* with walls the common drift is none */
+            continue;
+        }
         for (int c = 0; c < 3; c++)
             centre[c] = 0.5 * (sim->bed_low[c] + sim->bed_high[c]);
         pose_point(&before, centre, a);

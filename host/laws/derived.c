@@ -55,7 +55,17 @@ const law law_walls_finite = {
     .doc = "Planes, rectangles and discs, at rest or moving; a shared edge gives one contact.",
     .source = "TM Remark 1",
     .kernel_file = "effect/walls_common.cl",
-    .more_files = {"effect/walls_finite.cl"},
+    .more_files = {"effect/walls_flat.cl", "effect/walls_finite.cl"},
+    .pair_fields = {&field_faces},
+};
+
+const law law_walls_round = {
+    .name = "round",
+    .slot = SLOT_WALLS,
+    .doc = "Cylinders and cones, beside planes, rectangles and discs, at rest or moving.",
+    .source = "TM Remark 1",
+    .kernel_file = "effect/walls_common.cl",
+    .more_files = {"effect/walls_round.cl", "effect/walls_finite.cl"},
     .pair_fields = {&field_faces},
 };
 

@@ -53,15 +53,20 @@ typedef struct clast_control {
 #define CLAST_FACE_PLANE 0
 #define CLAST_FACE_RECTANGLE 1
 #define CLAST_FACE_DISC 2
+#define CLAST_FACE_ROUND 3     /* a cylinder, or a cone */
+#define CLAST_FACE_ROUND_FAR 4 /* a cone as seen across its axis */
 
 /* A face of a wall at one step. A plane: origin and unit normal towards the grains. A rectangle: origin at its centre, unit edges e1, e2
- * and half lengths `extent`. A disc: extent[0] is the radius. */
+ * and half lengths `extent`. A disc: extent[0] is the radius. A round face: origin on the axis at the first end, `normal` along the axis,
+ * extent holds the radii at both ends, and its meridian, from end to end, is `slant_length` long and runs `slant` (along the axis, off it). */
 typedef struct clast_face {
     clast_f64 origin[3];
     clast_f64 normal[3];
     clast_f64 e1[3];
     clast_f64 e2[3];
     clast_f64 extent[2];
+    clast_f64 slant[2];
+    clast_f64 slant_length;
     clast_f64 velocity[3]; /* of the point of the wall at `pivot` */
     clast_f64 spin[3];
     clast_f64 pivot[3];    /* torques on the wall are about this point */

@@ -3,6 +3,8 @@
 #define WALLS_CONTACT(launch, face, x, v, c, touch) \
     walls_contact(faces + (launch)->face_row * (launch)->face_count, (launch)->face_count, face, x, v, c, touch)
 
+#define WALLS_VECTOR(a) v3((real)(a)[0], (real)(a)[1], (real)(a)[2])
+
 typedef struct wall_touch {
     vec3 point;    /* of the wall, nearest to the grain's centre */
     vec3 velocity; /* of the wall there */
@@ -10,6 +12,13 @@ typedef struct wall_touch {
     real distance; /* from the centre; huge where another face has this contact */
     int party;
 } wall_touch;
+
+/* Nearest point of a face with borders. */
+typedef struct wall_nearest {
+    vec3 point, outward; /* outward: unit vector from the point to the centre */
+    real distance;
+    bool on_face;
+} wall_nearest;
 
 /* n, spin_j and turn of the contact; a face turns with its wall, an edge or a corner with the grain's passage. */
 INLINE void walls_fill(const __global clast_face *face, vec3 n, vec3 point, real distance, bool on_face, vec3 velocity_i, contact *c,

@@ -1,11 +1,5 @@
 /* walls: planes, rectangles and discs. A rectangle or a disc acts from both sides, at its face, its edge and its corners. An edge or a
  * corner counts only where no other face is nearer at that point, and once where several faces share it: the smallest index has it. */
-typedef struct wall_nearest {
-    vec3 point, outward; /* outward: unit vector from the point to the centre */
-    real distance;
-    bool on_face;
-} wall_nearest;
-
 INLINE real walls_clamp(real x, real limit)
 {
     return x > limit ? limit : (x < -limit ? -limit : x);
@@ -23,6 +17,8 @@ INLINE wall_nearest walls_find(const __global clast_face *face, vec3 x)
     vec3 normal = v3((real)face->normal[0], (real)face->normal[1], (real)face->normal[2]);
     vec3 origin = v3((real)face->origin[0], (real)face->origin[1], (real)face->origin[2]);
     vec3 from = sub(x, origin);
+    if (walls_is_round(face))
+        return walls_find_round(face, origin, normal, from);
     real height = dot3(from, normal);
     wall_nearest r;
     if (face->shape == CLAST_FACE_PLANE) {
@@ -57,7 +53,7 @@ INLINE bool walls_taken(const __global clast_face *row, int face_count, int inde
 {
     real near = R(1e-6) * mine->distance;
     for (int f = 0; f < face_count; f++) {
-        if (f == index)
+        if (f == index || walls_are_twins(row + f, row + index))
             continue;
         wall_nearest there = walls_find(row + f, mine->point);
         if (fabs(there.distance) > near)
@@ -75,5 +71,7 @@ INLINE void walls_contact(const __global clast_face *row, int face_count, int in
     wall_nearest mine = walls_find(row + index, x);
     bool taken = !mine.on_face && mine.distance < c->radius_i && walls_taken(row, face_count, index, x, &mine);
     walls_fill(row + index, scale(R(-1.0), mine.outward), mine.point, mine.distance, mine.on_face, velocity_i, c, touch);
+    if (walls_is_round(row + index))
+        c->turn = walls_turn_round(row + index, x, velocity_i, &mine, c, touch);
     touch->distance = taken ? R(1e30) : touch->distance;
 }

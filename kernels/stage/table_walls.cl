@@ -1,9 +1,24 @@
 /* Wall records: a grain and each face of a wall that it can reach before the next table. */
+/* In the plane of the axis and the centre a cylinder or a cone is a straight line, from end to end. */
+INLINE bool table_reaches_round(__global const clast_face *face, vec3 axis, vec3 from, real reach)
+{
+    real height = dot3(from, axis);
+    vec3 across = add_scaled(from, -height, axis);
+    real off = sqrt(dot3(across, across)), length = (real)face->slant_length;
+    real beyond = (face->shape == CLAST_FACE_ROUND_FAR ? -off : off) - (real)face->extent[0];
+    real along = height * (real)face->slant[0] + beyond * (real)face->slant[1];
+    along = along < R(0.0) ? R(0.0) : (along > length ? length : along);
+    real apart = height - along * (real)face->slant[0], apart_off = beyond - along * (real)face->slant[1];
+    return apart * apart + apart_off * apart_off < reach * reach;
+}
+
 INLINE bool table_reaches(__global const clast_face *face, vec3 x, real reach)
 {
     vec3 normal = v3((real)face->normal[0], (real)face->normal[1], (real)face->normal[2]);
     vec3 origin = v3((real)face->origin[0], (real)face->origin[1], (real)face->origin[2]);
     vec3 from = sub(x, origin);
+    if (face->shape >= CLAST_FACE_ROUND)
+        return table_reaches_round(face, normal, from, reach);
     real height = dot3(from, normal);
     if (face->shape == CLAST_FACE_PLANE)
         return height < reach;
