@@ -19,6 +19,8 @@ typedef enum slot_id {
     SLOT_SLIP, /* derived: one friction coefficient, or static and dynamic with the sliding flag */
     SLOT_TANGENTIAL,
     SLOT_ROLLING,
+    SLOT_DISSIPATION, /* derived: what contacts dissipate, where the ledger or heat asks */
+    SLOT_LEDGER, /* derived: energies, where an observable asks for them */
     SLOT_CONDUCTION,
     SLOT_WALLS,     /* derived: the shapes present */
     SLOT_WALL_HEAT, /* derived: walls that are not adiabatic */

@@ -2,11 +2,20 @@
 
 #include "laws/fields.h"
 #include "laws/laws.h"
+#include "ledger.h"
 #include "property.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+static bool wants_ledger(const scene *scene)
+{
+    for (int t = 0; t < LEDGER_TERMS; t++)
+        if (scene_outputs(scene, ledger_terms[t]))
+            return true;
+    return false;
+}
 
 static bool group_moves(const scene *scene, int group)
 {
@@ -131,6 +140,10 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
     if (out->law[SLOT_TANGENTIAL])
         out->law[SLOT_SLIP] = two_frictions(scene) ? &law_slip_two : &law_slip_single;
     out->law[SLOT_WALLS] = wall_law(scene);
+    if (wants_ledger(scene))
+        out->law[SLOT_LEDGER] = &law_ledger_energies;
+    if (out->law[SLOT_LEDGER])
+        out->law[SLOT_DISSIPATION] = &law_dissipation_tracked;
     if (scene_outputs(scene, "orientation"))
         out->law[SLOT_ORIENTATION] = &law_orientation_quaternion;
     const law *verlet = turning ? &law_velocity_verlet_spin : &law_velocity_verlet;
@@ -171,6 +184,7 @@ static const char *none_file(slot_id slot)
         [SLOT_WALL_HEAT] = "none/wall_heat.cl",     [SLOT_ENVIRONMENT] = "none/environment.cl", [SLOT_CONVECTION] = "none/convection.cl",
         [SLOT_RADIATION] = "none/radiation.cl",     [SLOT_SOURCE] = "none/source.cl",           [SLOT_HEAT_GENERATION] = "none/heat_generation.cl",
         [SLOT_THERMAL_GROUPS] = "none/thermal_groups.cl", [SLOT_HEAT_TALLY] = "none/heat_tally.cl",
+        [SLOT_DISSIPATION] = "none/dissipation.cl", [SLOT_LEDGER] = "none/ledger.cl",
         [SLOT_BODY] = "none/body.cl",               [SLOT_ORIENTATION] = "none/orientation.cl", [SLOT_INTEGRATOR] = NULL,
     };
     return files[slot];

@@ -239,6 +239,7 @@ typedef struct measured {
     bond_sums bonds;
     double stress[9];
     heat_sums heat;
+    double ledger[LEDGER_TERMS];
 } measured;
 
 static double bed_volume(const simulation *sim)
@@ -281,6 +282,11 @@ static int put_observable(const output *o, const char *name, const measured *m, 
     for (size_t s = 0; s < sizeof scalars / sizeof *scalars; s++)
         if (strcmp(scalars[s].name, name) == 0) {
             *to = scalars[s].value;
+            return 1;
+        }
+    for (int t = 0; t < LEDGER_TERMS; t++)
+        if (strcmp(ledger_terms[t], name) == 0) {
+            *to = m->ledger[t];
             return 1;
         }
     if (strcmp(name, "stress") == 0) {
@@ -328,6 +334,8 @@ status output_observe(output *o, failure *why)
         TRY(observe_virial(o->sim, m.stress, why));
     if (o->wants_heat)
         TRY(heat_observe(o->sim, &m.heat, why));
+    if (o->sim->all.law[SLOT_LEDGER])
+        TRY(ledger_read(o->sim, m.ledger, why));
     double *to = o->value;
     for (int k = 0; k < o->sim->scene->output.observable_count; k++)
         to += put_observable(o, o->observable[k].name, &m, to);

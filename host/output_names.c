@@ -13,7 +13,6 @@ const output_name output_fields[] = {
     {0},
 };
 
-#define LEDGER "the energy ledger"
 #define HEAT   "a heat law"
 
 const output_name output_observables[] = {
@@ -31,13 +30,15 @@ const output_name output_observables[] = {
     {"rebuilds", "1", 1, NULL, "rebuilds of the contact table so far"},
     {"left_count", "1", 1, NULL, "particles that have left the domain"},
     {"left_mass", "kg", 1, NULL, "their mass"},
-    {"dissipated_normal", "J", 1, LEDGER, "energy lost to normal damping"},
-    {"dissipated_tangential", "J", 1, LEDGER, "energy lost to friction and tangential damping"},
-    {"dissipated_rolling", "J", 1, LEDGER, "energy lost to rolling resistance"},
-    {"work_gravity", "J", 1, LEDGER, "work of gravity"},
-    {"work_walls", "J", 1, LEDGER, "work of the walls"},
-    {"work_expansion", "J", 1, LEDGER, "work of thermal expansion"},
-    {"work_stiffness", "J", 1, LEDGER, "work of changing stiffness"},
+    {"dissipated_normal", "J", 1, NULL, "energy lost to normal damping"},
+    {"dissipated_tangential", "J", 1, NULL, "energy lost to friction and tangential damping"},
+    {"dissipated_rolling", "J", 1, NULL, "energy lost to rolling resistance"},
+    {"dissipated_body", "J", 1, NULL, "energy lost to background damping"},
+    {"work_gravity", "J", 1, NULL, "work of gravity"},
+    {"work_walls", "J", 1, NULL, "work of the walls"},
+    {"work_groups", "J", 1, NULL, "work of what holds or moves grains as prescribed"},
+    {"work_expansion", "J", 1, NULL, "work of thermal expansion"},
+    {"work_stiffness", "J", 1, NULL, "work of changing stiffness"},
     {"thermal_energy", "J", 1, NULL, "heat content, the sum of m c T"},
     {"heat_sources", "J", 1, NULL, "heat gained from sources, generation, given fluxes and prescribed temperatures so far"},
     {"heat_convection", "J", 1, NULL, "heat gained by convection so far"},

@@ -515,6 +515,8 @@ status simulation_count_leavers(simulation *sim, int64_t kept, failure *why)
         result = store_read(sim, store_find(sim, "mass")->mem, 0, 8 * (uint64_t)sim->stride, mass, why);
     for (int64_t k = 0; k < gone && result == STATUS_OK; k++)
         sim->left_mass += mass[order[k]];
+    if (result == STATUS_OK)
+        result = ledger_leave(sim, order, gone, why);
     free(order);
     free(mass);
     sim->left_count += gone;

@@ -4,6 +4,7 @@
 #include "bed.h"
 #include "bundle.h"
 #include "device.h"
+#include "ledger.h"
 #include "live.h"
 #include "pose.h"
 #include "scene.h"
@@ -120,6 +121,7 @@ typedef struct simulation {
     double left_mass;
     int64_t bonds_gone;      /* bonds that records had which are no longer in the table */
     bool bonding_done;       /* contacts have bonded at the time given for it */
+    double left_energy[LEDGER_TERMS]; /* what the grains that have left had in the ledger */
     uint64_t bytes;          /* on the device */
 } simulation;
 
@@ -241,6 +243,11 @@ status bonds_count(simulation *sim, bond_sums *out, failure *why);
 /* Around whatever drops records or their histories, so that the bonds they had still count. */
 status bonds_before(simulation *sim, failure *why);
 status bonds_after(simulation *sim, failure *why);
+/* ledger.c */
+/* The terms of the ledger so far, LEDGER_TERMS of them in the order of ledger_terms. */
+status ledger_read(simulation *sim, double *out, failure *why);
+/* Keeps the sums of grains that leave. */
+status ledger_leave(simulation *sim, const int32_t *index, int64_t count, failure *why);
 
 /* guard.c */
 typedef struct guard_finding {

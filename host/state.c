@@ -96,6 +96,7 @@ status state_save(simulation *sim, bundle *out, failure *why)
     bundle_add_f64(out, "run/skin", sim->table.skin);
     bundle_add_i64(out, "run/left_count", sim->left_count);
     bundle_add_f64(out, "run/left_mass", sim->left_mass);
+    bundle_add(out, "run/left_energy", BUNDLE_F64, LEDGER_TERMS, 1, sim->left_energy);
     bundle_add_i64(out, "run/rebuilds", sim->rebuilds);
     bond_sums bonds;
     TRY(bonds_count(sim, &bonds, why));
@@ -262,6 +263,9 @@ static status load_run(simulation *sim, const bundle *in, const char *path, int6
     TRY(load_number(in, path, "run/skin", BUNDLE_F64, &sim->table.skin, NULL, why));
     TRY(load_number(in, path, "run/left_count", BUNDLE_I64, NULL, &sim->left_count, why));
     TRY(load_number(in, path, "run/left_mass", BUNDLE_F64, &sim->left_mass, NULL, why));
+    const bundle_entry *left;
+    TRY(bundle_get(in, path, "run/left_energy", BUNDLE_F64, LEDGER_TERMS, 1, &left, why));
+    memcpy(sim->left_energy, left->data, sizeof sim->left_energy);
     TRY(load_number(in, path, "run/rebuilds", BUNDLE_I64, NULL, &sim->rebuilds, why));
     int64_t done;
     TRY(load_number(in, path, "run/bonds_made", BUNDLE_I64, NULL, &sim->bonds_gone, why));

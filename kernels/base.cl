@@ -66,6 +66,12 @@ INLINE vec3 turn_by(vec3 v, vec3 w)
     return add_scaled(v, weight, cross3(h, add(v, cross3(h, v))));
 }
 
+/* Small increments add up over many steps: every running sum goes through here. */
+INLINE vec3 accumulate3(vec3 sum, vec3 increment)
+{
+    return add(sum, increment);
+}
+
 INLINE vec3 from3(const clast_f64 *a)
 {
     return v3((real)a[0], (real)a[1], (real)a[2]);
@@ -113,6 +119,8 @@ typedef struct contact {
     real touch;          /* overlap whether or not the two act on each other with forces, m */
     real temperature_i, temperature_j; /* K; of a wall: that of the grain */
     real dt;             /* of the step to come */
+    real span;           /* for which the forces act: the step to come, or the mean of two */
+    real lag;            /* time by which the velocities are older than the forces, s */
     /* what histories advance by: motion over the step that led here (under semi-implicit Euler that of its end) */
     real elapsed;        /* its length */
     real past_approach;
@@ -122,6 +130,16 @@ typedef struct contact {
     __global const real *value; /* that row */
 } contact;
 
+/* A spring, damper and slider over one step, for the energies. */
+typedef struct spring_step {
+    real stiffness;     /* 0 where the two do not touch */
+    real before, after; /* energy at this stiffness, of the stretch before this step and of the stretch now */
+    real limit;         /* the most that the spring can give back: of a stretch at which the slider gives way */
+    real rescaled;      /* square of the factor by which the law itself shortened the spring */
+    bool slides;
+    vec3 damper;        /* force or moment of the damper on i */
+} spring_step;
+
 /* What the laws make of it. */
 typedef struct response {
     real spring, damper; /* the two parts of the normal force */
@@ -129,7 +147,34 @@ typedef struct response {
     real bearing;    /* what friction and rolling are limited by: the normal force, or its compressive part where something also pulls */
     vec3 tangential; /* force on i */
     vec3 rolling;    /* moment on i; j gets the opposite */
+    spring_step sliding, turning;
 } response;
+
+/* What a contact dissipates in a step, and the work of stiffnesses that change under a stretched spring, J. */
+typedef struct dissipation {
+    real normal, tangential, rolling, stiffness;
+} dissipation;
+
+/* A grain over one step, for what adds up its energies: velocities and spins before and after, total force and torque without and with the
+ * background damping. */
+typedef struct grain_step {
+    real mass, inertia, span; /* span: for which the forces act, s */
+    vec3 velocity, velocity_next, spin, spin_next, force, force_damped, torque, torque_damped;
+    bool prescribed;
+} grain_step;
+
+INLINE spring_step no_spring(bool slides)
+{
+    spring_step s = {R(0.0), R(0.0), R(0.0), R(0.0), R(1.0), slides, {R(0.0), R(0.0), R(0.0)}};
+    return s;
+}
+
+/* A spring may hold more than the slider lets it give back: the damper of a sliding contact is balanced by its stretch. */
+INLINE real spring_energy(real stiffness, real compliance, vec3 stretch, real limit)
+{
+    real energy = R(0.5) * stiffness * dot3(stretch, stretch), most = R(0.5) * compliance * limit * limit;
+    return energy < most ? energy : most;
+}
 
 /* Stiffness and damping of one mode, for the step limit. */
 typedef struct mode {

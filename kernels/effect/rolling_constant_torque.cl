@@ -23,12 +23,14 @@ INLINE void rolling_moment(const contact *c, rolling_state *s, response *out)
     real ii = R(0.4) * c->mass_i * c->radius_i * c->radius_i, jj = R(0.4) * c->mass_j * c->radius_j * c->radius_j;
     real stop = c->dt > R(0.0) ? ii * jj / (ii + jj) * size / c->dt : R(0.0);
     limit = limit < stop ? limit : stop;
+    out->turning = no_spring(true);
     out->rolling = scale(size > R(0.0) ? -limit / (size > R(0.0) ? size : R(1.0)) : R(0.0), rate);
 }
 
-INLINE real rolling_energy(const contact *c, const rolling_state *s)
+INLINE real rolling_energy(const contact *c, const rolling_state *s, real normal)
 {
     (void)c;
+    (void)normal;
     (void)s;
     return R(0.0);
 }

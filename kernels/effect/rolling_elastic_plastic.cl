@@ -50,7 +50,8 @@ INLINE void rolling_moment(const contact *c, rolling_state *s, response *out)
 {
     mode m = rolling_mode(c);
     vec3 rate = rolling_rate(c, c->spin_i, c->spin_j);
-    vec3 spring = add_scaled(rolling_turn(c, s->spring), c->elapsed, rolling_rate(c, c->past_spin_i, c->past_spin_j));
+    vec3 before = rolling_turn(c, s->spring);
+    vec3 spring = add_scaled(before, c->elapsed, rolling_rate(c, c->past_spin_i, c->past_spin_j));
     vec3 trial = add_scaled(scale(-m.stiffness, spring), -m.damping, rate);
     real size = sqrt(dot3(trial, trial)), limit = c->value[ROLLING_FRICTION] * c->radius_eff * out->bearing;
     real compliance = c->value[ROLLING_COMPLIANCE] * c->contact_inverse * c->radius_inverse * c->radius_inverse;
@@ -60,9 +61,18 @@ INLINE void rolling_moment(const contact *c, rolling_state *s, response *out)
     vec3 returned = scale(-compliance, add_scaled(out->rolling, m.damping, rate));
     s->spring = v3(yields ? returned.x : spring.x, yields ? returned.y : spring.y, yields ? returned.z : spring.z);
     s->spring = v3(live ? s->spring.x : R(0.0), live ? s->spring.y : R(0.0), live ? s->spring.z : R(0.0));
+    spring_step step = {m.stiffness,
+                        R(0.5) * m.stiffness * dot3(before, before),
+                        R(0.5) * m.stiffness * dot3(s->spring, s->spring),
+                        R(0.5) * compliance * limit * limit,
+                        R(1.0),
+                        yields,
+                        scale(-m.damping, rate)};
+    out->turning = step;
 }
 
-INLINE real rolling_energy(const contact *c, const rolling_state *s)
+INLINE real rolling_energy(const contact *c, const rolling_state *s, real normal)
 {
-    return R(0.5) * rolling_mode(c).stiffness * dot3(s->spring, s->spring);
+    real compliance = c->value[ROLLING_COMPLIANCE] * c->contact_inverse * c->radius_inverse * c->radius_inverse;
+    return spring_energy(rolling_mode(c).stiffness, compliance, s->spring, c->value[ROLLING_FRICTION] * c->radius_eff * normal);
 }

@@ -13,6 +13,11 @@ typedef struct slip_state {
     real sliding;
 } slip_state;
 
+INLINE real slip_limit(const contact *c, real normal, const slip_state *s)
+{
+    return (s->sliding > R(0.5) ? c->value[FRICTION_DYNAMIC] : c->value[FRICTION_STATIC]) * normal;
+}
+
 /* 1 where the trial force holds. */
 INLINE real slip_factor(const contact *c, real normal, real trial, slip_state *s)
 {

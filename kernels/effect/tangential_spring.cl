@@ -39,19 +39,29 @@ typedef struct tangential_state {
 INLINE void tangential_force(const contact *c, slip_state *slip, tangential_state *s, response *out)
 {
     real stiffness = TANGENTIAL_STIFFNESS_OF(c), damping = TANGENTIAL_DAMPING_OF(c);
-    vec3 spring = spring_turn(c, s->spring);
+    vec3 before = spring_turn(c, s->spring);
+    real shortened = TANGENTIAL_RESCALED ? spring_unloading(c) : R(1.0);
     if (TANGENTIAL_RESCALED)
-        spring = scale(spring_unloading(c), spring);
-    spring = add_scaled(spring, c->elapsed, c->past_slip);
+        before = scale(shortened, before);
+    vec3 spring = add_scaled(before, c->elapsed, c->past_slip);
     vec3 trial = add_scaled(scale(-stiffness, spring), -damping, c->slip);
     real factor = slip_factor(c, out->bearing, sqrt(dot3(trial, trial)), slip);
     out->tangential = scale(factor, trial);
     s->spring = spring_return(c, TANGENTIAL_COMPLIANCE_OF(c), damping, factor, spring, out->tangential);
+    real limit = slip_limit(c, out->bearing, slip), bound = R(0.5) * TANGENTIAL_COMPLIANCE_OF(c) * limit * limit;
+    spring_step step = {stiffness,
+                        R(0.5) * stiffness * dot3(before, before),
+                        R(0.5) * stiffness * dot3(s->spring, s->spring),
+                        bound,
+                        shortened * shortened,
+                        factor < R(1.0),
+                        scale(-damping, c->slip)};
+    out->sliding = step;
 }
 
-INLINE real tangential_energy(const contact *c, const tangential_state *s)
+INLINE real tangential_energy(const contact *c, const slip_state *slip, const tangential_state *s, real normal)
 {
-    return R(0.5) * TANGENTIAL_STIFFNESS_OF(c) * dot3(s->spring, s->spring);
+    return spring_energy(TANGENTIAL_STIFFNESS_OF(c), TANGENTIAL_COMPLIANCE_OF(c), s->spring, slip_limit(c, normal, slip));
 }
 
 INLINE mode tangential_mode(const contact *c)

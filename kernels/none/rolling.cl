@@ -12,11 +12,13 @@ INLINE void rolling_moment(const contact *c, rolling_state *s, response *out)
     (void)c;
     (void)s;
     out->rolling = v3(R(0.0), R(0.0), R(0.0));
+    out->turning = no_spring(false);
 }
 
-INLINE real rolling_energy(const contact *c, const rolling_state *s)
+INLINE real rolling_energy(const contact *c, const rolling_state *s, real normal)
 {
     (void)c;
+    (void)normal;
     (void)s;
     return R(0.0);
 }

@@ -16,11 +16,14 @@ INLINE void tangential_force(const contact *c, slip_state *slip, tangential_stat
     (void)slip;
     (void)s;
     out->tangential = v3(R(0.0), R(0.0), R(0.0));
+    out->sliding = no_spring(false);
 }
 
-INLINE real tangential_energy(const contact *c, const tangential_state *s)
+INLINE real tangential_energy(const contact *c, const slip_state *slip, const tangential_state *s, real normal)
 {
     (void)c;
+    (void)slip;
+    (void)normal;
     (void)s;
     return R(0.0);
 }

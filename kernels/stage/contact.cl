@@ -5,7 +5,8 @@
     READ(real, contact_constants) \
     WRITE(real, force) COMPOSITION_PAIR_FIELDS(READ, WRITE) MOTION_PAIR_FIELDS(READ, WRITE) ROTATION_PAIR_FIELDS(READ, WRITE)    \
     BONDING_PAIR_FIELDS(READ, WRITE) BOND_PAIR_FIELDS(READ, WRITE) COHESION_PAIR_FIELDS(READ, WRITE)                           \
-    SLIP_PAIR_FIELDS(READ, WRITE) TANGENTIAL_PAIR_FIELDS(READ, WRITE) ROLLING_PAIR_FIELDS(READ, WRITE) WALLS_PAIR_FIELDS(READ, WRITE)     \
+    SLIP_PAIR_FIELDS(READ, WRITE) TANGENTIAL_PAIR_FIELDS(READ, WRITE) ROLLING_PAIR_FIELDS(READ, WRITE)                                        \
+    DISSIPATION_PAIR_FIELDS(READ, WRITE) LEDGER_PAIR_FIELDS(READ, WRITE) WALLS_PAIR_FIELDS(READ, WRITE)                                  \
     TEMPERATURE_PAIR_FIELDS(READ, WRITE) CONDUCTION_PAIR_FIELDS(READ, WRITE) WALL_HEAT_PAIR_FIELDS(READ, WRITE) INTEGRATOR_PAIR_FIELDS(READ, WRITE)
 #define PAIR_DECLARE PAIR_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PAIR_PASS PAIR_FIELDS(PASS, PASS)
@@ -102,6 +103,8 @@ typedef struct contact_state {
     slip_state slip;
     tangential_state tangential;
     rolling_state rolling;
+    dissipation_state dissipation;
+    ledger_state ledger;
 } contact_state;
 
 /* Spring and damper together never pull; a bond or cohesion, which come after this, may. */
@@ -122,5 +125,6 @@ INLINE void contact_laws(contact *c, contact_state *s, response *out)
     cohesion_force(c, &s->cohesion, out);
     tangential_force(c, &s->slip, &s->tangential, out);
     rolling_moment(c, &s->rolling, out);
+    ledger_contact(&s->ledger, dissipation_of(c, out, &s->dissipation));
     bond_shear(c, &s->bond, out);
 }

@@ -4,18 +4,24 @@
     COHESION_LOAD(launch, k, (s).cohesion);       \
     SLIP_LOAD(launch, k, (s).slip);               \
     TANGENTIAL_LOAD(launch, k, (s).tangential);   \
-    ROLLING_LOAD(launch, k, (s).rolling)
+    ROLLING_LOAD(launch, k, (s).rolling);         \
+    DISSIPATION_LOAD(launch, k, (s).dissipation); \
+    LEDGER_LOAD(launch, k, (s).ledger)
 #define PAIR_STORE_STATE(launch, k, s)            \
     BOND_STORE(launch, k, (s).bond);              \
     COHESION_STORE(launch, k, (s).cohesion);      \
     SLIP_STORE(launch, k, (s).slip);              \
     TANGENTIAL_STORE(launch, k, (s).tangential);  \
-    ROLLING_STORE(launch, k, (s).rolling)
+    ROLLING_STORE(launch, k, (s).rolling);        \
+    DISSIPATION_STORE(launch, k, (s).dissipation);\
+    LEDGER_STORE(launch, k, (s).ledger)
 
-/* The rest of a record once its geometry is known; `keep` writes the history. */
-#define PAIR_LAWS(keep)                                                  \
+/* The rest of a record once its geometry is known; `account` may add to the ledger, `keep` writes the history. */
+#define PAIR_LAWS(keep, account)                                             \
     c.dt = (real)launch->dt;                                             \
     c.elapsed = (real)INTEGRATOR_ELAPSED(launch);                        \
+    c.span = (real)launch->kick;                                         \
+    c.lag = INTEGRATOR_LAG * c.span;                                     \
     c.value = contact_constants + c.class * CONTACT_CONSTANTS;           \
     PAIR_LOAD_STATE(launch, k, s);                                       \
     contact_laws(&c, &s, &out);                                          \
@@ -23,8 +29,10 @@
     vec3 lever = cross3(c.n, out.tangential);                            \
     vec3 on_owner = add_scaled(out.rolling, c.arm_i, lever);             \
     STORE3(force, launch->record_stride, k, total);                      \
+    account;                                                             \
     keep(launch, k, s)
 #define PAIR_KEEP_NOTHING(launch, k, s)
+#define PAIR_WORK_OF_WALL ledger_wall(&s.ledger, c.span *(dot3(total, touch.velocity) + dot3(out.rolling, c.spin_j)))
 
 #define PAIR_OF_GRAINS(name, keep)                                                                  \
     INLINE void name(const clast_launch *launch, int k PAIR_DECLARE)                                \
@@ -33,7 +41,7 @@
         contact_state s;                                                                            \
         response out;                                                                               \
         contact_of_grains(launch, k, &c PAIR_PASS);                                                 \
-        PAIR_LAWS(keep);                                                                            \
+        PAIR_LAWS(keep, (void)0);                                                                  \
         CONDUCTION_STORE(launch, k, conduction_conductance(&c) * (c.temperature_j - c.temperature_i)); \
         vec3 on_other = add_scaled(scale(R(-1.0), out.rolling), c.arm_j, lever);                    \
         ROTATION_STORE_TORQUE(launch, k, on_owner, on_other);                                       \
@@ -47,7 +55,7 @@
         response out;                                                                               \
         wall_touch touch;                                                                           \
         contact_of_wall(launch, k, &c, &touch PAIR_PASS);                                           \
-        PAIR_LAWS(keep);                                                                            \
+        PAIR_LAWS(keep, PAIR_WORK_OF_WALL);                                                         \
         CONDUCTION_STORE(launch, k, WALL_HEAT_FLOW(launch, other[k], &c, conduction_wall_conductance(&c))); \
         vec3 on_wall = sub(cross3(total, sub(touch.point, touch.pivot)), out.rolling);              \
         ROTATION_STORE_TORQUE(launch, k, on_owner, on_wall);                                        \

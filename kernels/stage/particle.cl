@@ -4,7 +4,7 @@
     READ(real, built_position) MOTION_PARTICLE_FIELDS(READ, WRITE) \
     ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE) TEMPERATURE_PARTICLE_FIELDS(READ, WRITE)                \
     SUBSTANCE_PARTICLE_FIELDS(READ, WRITE) ENVIRONMENT_PARTICLE_FIELDS(READ, WRITE) CONDUCTION_PARTICLE_FIELDS(READ, WRITE)             \
-    SOURCE_PARTICLE_FIELDS(READ, WRITE) THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE)              \
+    SOURCE_PARTICLE_FIELDS(READ, WRITE) THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE) LEDGER_PARTICLE_FIELDS(READ, WRITE)           \
     INTEGRATOR_PARTICLE_FIELDS(READ, WRITE)
 #define PARTICLE_DECLARE PARTICLE_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PARTICLE_PASS PARTICLE_FIELDS(PASS, PASS)
@@ -71,14 +71,17 @@ INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t P
     int mover_i = MOTION_GRAIN(i);
     vec3 x = GRAIN3(position, i), v = GRAIN3(velocity, i), w = ROTATION_LOAD(launch, i);
     __global const clast_mover *row = MOTION_ROW(launch);
-    f = body_force(add_scaled(f, m, from3(launch->gravity)), v, m);
-    t = body_force(t, w, inertia);
-    vec3 a = scale(R(1.0) / m, f);
+    f = add_scaled(f, m, from3(launch->gravity));
+    vec3 damped = body_force(f, v, m), damped_t = body_force(t, w, inertia);
+    vec3 a = scale(R(1.0) / m, damped);
     vec3 v1 = integrate_velocity(INTEGRATOR_VELOCITY(i, v), a, kick);
-    vec3 w1 = rotation_advance(INTEGRATOR_SPIN(i, w), t, inertia, kick);
+    vec3 w1 = rotation_advance(INTEGRATOR_SPIN(i, w), damped_t, inertia, kick);
     vec3 x1 = motion_position(row, mover_i, integrate_position(x, v1, dt), x);
     vec3 v2 = motion_velocity(row, mover_i, INTEGRATOR_AHEAD(v1, integrate_velocity(v1, a, R(0.5) * dt)), x1);
-    vec3 w2 = motion_spin(row, mover_i, INTEGRATOR_AHEAD(w1, rotation_advance(w1, t, inertia, R(0.5) * dt)));
+    vec3 w2 = motion_spin(row, mover_i, INTEGRATOR_AHEAD(w1, rotation_advance(w1, damped_t, inertia, R(0.5) * dt)));
+    grain_step step = {m,        inertia,          kick, INTEGRATOR_VELOCITY(i, v), motion_velocity(row, mover_i, v1, x1), INTEGRATOR_SPIN(i, w),
+                       motion_spin(row, mover_i, w1), f, damped, t, damped_t, mover_i >= 0};
+    (void)step;
     INTEGRATOR_KEEP_VELOCITY(i, motion_velocity(row, mover_i, v1, x1));
     INTEGRATOR_KEEP_SPIN(i, motion_spin(row, mover_i, w1));
     w1 = motion_spin(row, mover_i, w1);
@@ -87,6 +90,7 @@ INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t P
     SET_GRAIN3(velocity, i, v2);
     ROTATION_STORE(launch, i, w2);
     ORIENTATION_ADVANCE(launch, i, w1);
+    LEDGER_ADVANCE(launch, i, &step);
     vec3 moved = periodic_nearest(launch, sub(sub(x1, GRAIN3(built_position, i)), from3(launch->drift)));
     return dot3(moved, moved);
 }

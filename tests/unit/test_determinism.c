@@ -34,13 +34,15 @@ static const char *const scenes[VARIANTS] = {
     "  - {name: floor, shape: plane, point_m: [0, 0, 0.002], normal: [0, 0, 1], motion: [{type: sinusoid, direction: [0.6, 0, 0.8],"
     " amplitude_m: 4.0e-4, frequency_hz: 73}]}\n"
     "  - {name: vane, shape: rectangle, corners_m: [[0.007, 0.001, 0.003], [0.007, 0.013, 0.003], [0.007, 0.001, 0.006]],"
-    " motion: [{type: rotation, point_m: [0.007, 0.007, 0], axis: [0, 0, 1], rate_rad_s: 31}]}\n",
+    " motion: [{type: rotation, point_m: [0.007, 0.007, 0], axis: [0, 0, 1], rate_rad_s: 31}]}\n"
+    "output: {observables: [dissipated_tangential, work_walls]}\n",
     [PERIODIC] = COMMON GRAINS "domain: {low_m: [0, 0, 0], high_m: [0.014, 0.014, 0.03], periodic: [x, y]}\n"
                                "walls: [{name: floor, shape: plane, point_m: [0, 0, 0.002], normal: [0, 0, 1]}]\n",
     [SHEARED] = COMMON GRAINS
     "  - {name: base, material: glass, generator: lattice, lattice: simple_cubic, counts: [7, 7, 1], spacing_m: 0.002, radius_m: 1.0e-3,"
     " origin_m: [0.001, 0.001, 0.0005], motion: [{type: constant, velocity_m_s: [0.4, 0, 0]}, {type: sinusoid, direction: [0, 0, 1],"
     " amplitude_m: 3.0e-4, frequency_hz: 53}]}\n"
+    "output: {observables: [dissipated_normal, work_groups]}\n"
     "domain: {low_m: [0, 0, -0.01], high_m: [0.014, 0.014, 0.05], periodic: [x, y]}\n",
 };
 
@@ -78,7 +80,7 @@ static void advance(simulation *sim, int64_t steps, const manner *how)
     }
 }
 
-/* What two runs are compared by: positions, velocities and spins in the order of ids, then sums and the step limit. */
+/* What two runs are compared by: positions, velocities and spins in the order of ids, then sums, the step limit and the energy ledger. */
 typedef struct dump {
     int64_t count; /* doubles */
     double *value;
@@ -88,7 +90,7 @@ static dump dump_of(simulation *sim)
 {
     static const char *const names[] = {"position", "velocity", "spin"};
     int64_t n = 3 * sim->id_count;
-    dump d = {3 * n + 16, calloc((size_t)(3 * n + 16), sizeof(double))};
+    dump d = {3 * n + 32, calloc((size_t)(3 * n + 32), sizeof(double))};
     assert_non_null(d.value);
     for (int f = 0; f < 3; f++) {
         double *rows = NULL;
@@ -106,6 +108,8 @@ static dump dump_of(simulation *sim)
                            contacts.overlap_max, (double)contacts.contacts, limit.limit_s,    limit.recommended_s, sim->time,
                            (double)sim->step,    (double)sim->count};
     memcpy(d.value + 3 * n, rest, sizeof rest);
+    if (sim->all.law[SLOT_LEDGER])
+        MUST(ledger_read(sim, d.value + 3 * n + sizeof rest / sizeof *rest, why));
     return d;
 }
 

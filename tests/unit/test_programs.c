@@ -48,6 +48,8 @@ static const law *const every_law[] = {
     &law_volumetric,
     &law_thermal_groups,
     &law_heat_tally,
+    &law_dissipation_tracked,
+    &law_ledger_energies,
 };
 #define LAWS (sizeof every_law / sizeof *every_law)
 
@@ -82,6 +84,8 @@ static void complete(live_laws *live)
         live->law[SLOT_ROTATION] = &law_rotation_spin;
     if (live->law[SLOT_BONDING] == &law_bonding_temperature)
         live->law[SLOT_TEMPERATURE] = &law_temperature_pairs;
+    if (live->law[SLOT_LEDGER])
+        live->law[SLOT_DISSIPATION] = &law_dissipation_tracked;
     complete_heat(live);
     const law *verlet = live->law[SLOT_ROTATION] ? &law_velocity_verlet_spin : &law_velocity_verlet;
     live->law[SLOT_INTEGRATOR] = live->law[SLOT_INTEGRATOR] ? verlet : &law_semi_implicit_euler;
@@ -336,6 +340,7 @@ static void test_on_device(void **state)
         {&law_overlap_area, &law_substance_several},
         {&law_wall_temperature, &law_environment_profile},
         {&law_nusselt, &law_thermal_groups},
+        {&law_hertz, &law_ledger_energies},
     };
     for (size_t n = 0; n < sizeof pairs / sizeof *pairs; n++) {
         live_laws live = with(pairs[n][0], pairs[n][1]);

@@ -27,7 +27,8 @@ walls:
   - {name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1],
      motion: [{type: sinusoid, direction: [0.6, 0, 0.8], amplitude_m: 2.0e-4, frequency_hz: 90}]}
 """
-OUTPUT = "output: {{every_s: {0}, fields: [position, velocity, spin], observables: [time_step, kinetic_energy, left_count, left_mass], "
+OUTPUT = "output: {{every_s: {0}, fields: [position, velocity, spin], observables: [time_step, kinetic_energy, left_count, left_mass, " \
+         "dissipated_normal, dissipated_tangential, dissipated_rolling, work_walls, work_stiffness, work_gravity], "
 FIXED = BED + """
 stages: [{name: go, until: {time_s: 0.02}, step_s: 1.0e-5}]
 """ + OUTPUT.format(0.004).replace("{{", "{") + "checkpoint_every_s: 0.0123}\n"

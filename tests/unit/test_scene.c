@@ -497,7 +497,6 @@ static const bad_scene bad_scenes[] = {
     {"gravity_m_s2: [0, 0, -9.81]", "gravity_m_s2: [0, 0, 0]", "dir/scene.yaml:21:33: `rest` compares with m g r, and this stage has no gravity; use `rest_j`"},
     {"observables: [kinetic_energy]", "observables: [kinetic_enrgy]", "there is no observable called `kinetic_enrgy`; did you mean `kinetic_energy`?"},
     {"observables: [kinetic_energy]", "observables: [thermal_energy]", "the material `glass` lacks `specific_heat_j_kgk`, which every scene with temperatures needs"},
-    {"observables: [kinetic_energy]", "observables: [work_walls]", "needs the energy ledger, which this version does not have"},
     {"observables: [kinetic_energy]", "fields: [temperature]", "the material `glass` lacks `specific_heat_j_kgk`"},
     {"observables: [kinetic_energy]", "fields: [position, position]", "listed twice"},
     {"observables: [kinetic_energy]", "fields: [colour]", "there is no field called `colour`"},

@@ -1,0 +1,35 @@
+#include "fields.h"
+#include "laws.h"
+
+static const field field_tangential_stored = {"tangential_stored", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, "J",
+                                              "energy of the tangential spring after the last step"};
+static const field field_tangential_at = {"tangential_stiffness", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, "N/m", "its stiffness then"};
+static const field field_rolling_stored = {"rolling_stored", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, "J",
+                                           "energy of the rolling spring after the last step"};
+static const field field_rolling_at = {"rolling_stiffness", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, "N m", "its stiffness then"};
+
+const law law_dissipation_tracked = {
+    .name = "tracked",
+    .slot = SLOT_DISSIPATION,
+    .doc = "What every contact dissipates in a step, from the forces that act.",
+    .source = "docs/theory.md",
+    .kernel_file = "effect/dissipation_tracked.cl",
+    .pair_fields = {&field_tangential_stored, &field_tangential_at, &field_rolling_stored, &field_rolling_at},
+};
+
+static const field field_record_energy = {"record_energy", PER_RECORD, FIELD_REAL, 5, FIELD_RESULT, "J",
+                                          "of this step: dissipated normal, tangential, rolling; work of the wall, of changing stiffness"};
+const field field_dissipated = {"dissipated", PER_PARTICLE, FIELD_REAL, 3, FIELD_STATE, "J", "dissipated normal, tangential, rolling"};
+const field field_work_contacts = {"work_contacts", PER_PARTICLE, FIELD_REAL, 3, FIELD_STATE, "J", "work of walls, changing stiffness, expansion"};
+const field field_work_grains = {"work_grains", PER_PARTICLE, FIELD_REAL, 3, FIELD_STATE, "J",
+                                 "work of gravity; dissipated by background damping; work of prescribed motion"};
+
+const law law_ledger_energies = {
+    .name = "energies",
+    .slot = SLOT_LEDGER,
+    .doc = "What contacts and background damping dissipate, and the work of gravity, walls, prescribed groups and changing stiffness.",
+    .source = "docs/theory.md",
+    .kernel_file = "effect/ledger_energies.cl",
+    .pair_fields = {&field_record_energy},
+    .particle_fields = {&field_record_energy, &field_dissipated, &field_work_contacts, &field_work_grains},
+};

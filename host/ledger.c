@@ -1,0 +1,43 @@
+#include "ledger.h"
+
+#include "laws/fields.h"
+#include "simulation.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *const ledger_terms[LEDGER_TERMS] = {"dissipated_normal", "dissipated_tangential", "dissipated_rolling",
+                                                "work_walls",        "work_stiffness",        "work_expansion",
+                                                "work_gravity",      "dissipated_body",       "work_groups"};
+
+static const field *const sums[LEDGER_FIELDS] = {&field_dissipated, &field_work_contacts, &field_work_grains};
+
+status ledger_read(simulation *sim, double *out, failure *why)
+{
+    memcpy(out, sim->left_energy, sizeof sim->left_energy);
+    for (int f = 0; f < LEDGER_FIELDS; f++) {
+        double *value = NULL;
+        status result = observe_field(sim, sums[f]->name, &value, why);
+        for (int64_t n = 0; n < sim->id_count && result == STATUS_OK; n++)
+            for (int c = 0; c < 3; c++)
+                out[3 * f + c] += value[3 * n + c] == value[3 * n + c] ? value[3 * n + c] : 0.0; /* NAN: it has left */
+        free(value);
+        TRY(result);
+    }
+    return STATUS_OK;
+}
+
+status ledger_leave(simulation *sim, const int32_t *index, int64_t count, failure *why)
+{
+    for (int f = 0; f < LEDGER_FIELDS && sim->all.law[SLOT_LEDGER]; f++) {
+        stored_field *stored = store_find(sim, sums[f]->name);
+        double *value = malloc(3 * sizeof *value * (size_t)sim->stride);
+        status result = value ? store_read(sim, stored->mem, 0, 24 * (uint64_t)sim->stride, value, why) : fail(why, STATUS_ERROR, "out of memory");
+        for (int64_t k = 0; k < count && result == STATUS_OK; k++)
+            for (int c = 0; c < 3; c++)
+                sim->left_energy[3 * f + c] += value[3 * (int64_t)index[k] + c];
+        free(value);
+        TRY(result);
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,71 @@
+/* dissipation: what the forces of a contact take out of the motion in a step, the clamp included, and no spring stores: all of the energy that a
+ * collision loses and no more (docs/theory.md, "The energy ledger"). History: energy and stiffness of the two springs after the last step. */
+#define DISSIPATION_PAIR_FIELDS(READ, WRITE)                                            \
+    WRITE(real, tangential_stored) WRITE(real, tangential_stiffness) WRITE(real, rolling_stored) WRITE(real, rolling_stiffness)
+#define DISSIPATION_LOAD(launch, k, s)                    \
+    do {                                                  \
+        (s).tangential = tangential_stored[k];            \
+        (s).tangential_at = tangential_stiffness[k];      \
+        (s).rolling = rolling_stored[k];                  \
+        (s).rolling_at = rolling_stiffness[k];            \
+    } while (0)
+#define DISSIPATION_STORE(launch, k, s)                   \
+    do {                                                  \
+        tangential_stored[k] = (s).tangential;            \
+        tangential_stiffness[k] = (s).tangential_at;      \
+        rolling_stored[k] = (s).rolling;                  \
+        rolling_stiffness[k] = (s).rolling_at;            \
+    } while (0)
+
+typedef struct dissipation_state {
+    real tangential, tangential_at, rolling, rolling_at;
+} dissipation_state;
+
+/* The velocities at the time of the forces: those that the laws see, carried on by the contact's own forces over the lag of the integrator. */
+typedef struct acting_rates {
+    real approach;
+    vec3 slip, turning;
+} acting_rates;
+
+INLINE acting_rates dissipation_rates(const contact *c, const response *out)
+{
+    real lag = c->lag;
+    real mass = R(1.0) / c->mass_i + R(1.0) / c->mass_j;
+    real spin_i = R(2.5) / (c->mass_i * c->radius_i * c->radius_i), spin_j = R(2.5) / (c->mass_j * c->radius_j * c->radius_j);
+    real levers = c->arm_i * c->arm_i * spin_i + c->arm_j * c->arm_j * spin_j, uneven = c->arm_i * spin_i - c->arm_j * spin_j;
+    acting_rates r;
+    r.approach = c->approach - lag * mass * out->normal;
+    r.slip = add_scaled(add_scaled(c->slip, lag * (mass + levers), out->tangential), lag * uneven, cross3(out->rolling, c->n));
+    r.turning = add_scaled(sub(c->spin_i, c->spin_j), lag * uneven, cross3(c->n, out->tangential));
+    r.turning = add_scaled(r.turning, lag * (spin_i + spin_j), out->rolling);
+    return r;
+}
+
+/* What spring, damper and slider lose. `stored` was held at the stiffness `at`. While the contact sticks the change of stiffness since does work
+ * on the stretch, *work; while it slides, the slider sets the stretch, and what the spring loses is lost. */
+INLINE real dissipation_spring(const spring_step *step, real stored, real at, vec3 force, vec3 rate, real dt, real *work)
+{
+    bool slides = step->slides || !(step->stiffness > R(0.0));
+    real carried = at > R(0.0) ? stored * step->stiffness * step->rescaled / (at > R(0.0) ? at : R(1.0)) : stored;
+    real after = step->after < step->limit ? step->after : step->limit;
+    real sliding = -dt * dot3(force, rate) - (after - stored);
+    real sticking = -dt * dot3(step->damper, rate) + (step->after - after) - (step->before - carried);
+    *work = slides ? R(0.0) : carried - stored;
+    return slides ? sliding : sticking;
+}
+
+INLINE dissipation dissipation_of(const contact *c, const response *out, dissipation_state *s)
+{
+    acting_rates rate = dissipation_rates(c, out);
+    dissipation lost;
+    real sliding, turning;
+    lost.normal = c->span * (out->normal - out->spring) * rate.approach;
+    lost.tangential = dissipation_spring(&out->sliding, s->tangential, s->tangential_at, out->tangential, rate.slip, c->span, &sliding);
+    lost.rolling = dissipation_spring(&out->turning, s->rolling, s->rolling_at, out->rolling, rate.turning, c->span, &turning);
+    lost.stiffness = sliding + turning;
+    s->tangential = out->sliding.after < out->sliding.limit ? out->sliding.after : out->sliding.limit;
+    s->tangential_at = out->sliding.stiffness;
+    s->rolling = out->turning.after < out->turning.limit ? out->turning.after : out->turning.limit;
+    s->rolling_at = out->turning.stiffness;
+    return lost;
+}
