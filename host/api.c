@@ -108,7 +108,7 @@ static status open_bed(clast_bed *b, const char *path, char *const *sets, int se
 {
     TRY(scene_read(path, set_count, sets, &b->scene, why));
     TRY(bed_generate(b->scene, &b->bed, why));
-    TRY(device_open(device_choice, true, &b->device, why));
+    TRY(device_open(device_choice, b->scene->precision != PRECISION_MIXED, &b->device, why));
     TRY(simulation_create(b->scene, &b->bed, &b->device, NULL, &b->sim, why));
     return begin(b, 0, why);
 }
@@ -184,7 +184,7 @@ int64_t clast_bed_count(const clast_bed *b)
 static const stored_field *grain_field(clast_bed *b, const char *name)
 {
     const stored_field *stored = store_find(b->sim, name);
-    return stored && stored->field->extent == PER_PARTICLE && stored->field->type == FIELD_REAL ? stored : NULL;
+    return stored && stored->field->extent == PER_PARTICLE && stored->field->type != FIELD_INT ? stored : NULL;
 }
 
 int clast_bed_components(clast_bed *b, const char *name)

@@ -102,8 +102,8 @@ static status profile_steps(simulation *sim, cl_command_queue queue, bench_figur
     launch.travel2 = 1.0; /* no table falls due meanwhile */
     TRY(store_write(sim, sim->control, 0, sizeof control, &control, why));
     for (int s = 0; s < PROFILE_STEPS; s++) {
-        TRY_CL(clSetKernelArg(pair, 0, sizeof launch, &launch), "pair_stage");
-        TRY_CL(clSetKernelArg(particle, 0, sizeof launch, &launch), "particle_stage");
+        TRY(launch_pass(pair, "pair_stage", &launch, why));
+        TRY(launch_pass(particle, "particle_stage", &launch, why));
         TRY(launch_timed(queue, pair, sim->table.record_count, &out->pair_s, why));
         TRY(launch_timed(queue, particle, sim->count, &out->particle_s, why));
     }
@@ -165,7 +165,8 @@ static status measure(simulation *sim, const bench_options *options, bench_figur
 static void print_figures(const bench_figures *f, const bench_options *options)
 {
     double n = (double)f->particles;
-    printf("Settled bed of %lld grains%s on %s\n", (long long)f->particles, options->rolling ? ", rolling resistance," : "", f->device);
+    printf("Settled bed of %lld grains%s in %s precision on %s\n", (long long)f->particles,
+           options->rolling ? ", rolling resistance," : "", options->mixed ? "mixed" : "double", f->device);
     printf("  %-28s%.4g million (%.4g ns each)\n", "particle-steps a second", 1e-6 * f->particle_steps_per_s,
            1e9 / f->particle_steps_per_s);
     printf("  %-28s%.4g s for %lld steps\n", "wall time", f->wall_s, (long long)f->steps);
@@ -179,7 +180,7 @@ static void print_figures(const bench_figures *f, const bench_options *options)
 
 static status write_json(const bench_figures *f, const bench_options *options, failure *why)
 {
-    json_t *root = json_pack("{s:s, s:I, s:I, s:f, s:b, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f}", "device", f->device,
+    json_t *root = json_pack("{s:s, s:s, s:I, s:I, s:f, s:b, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f}", "device", f->device, "precision", options->mixed ? "mixed" : "double",
                              "particles", (json_int_t)f->particles, "steps", (json_int_t)f->steps, "step_s", STEP_S, "rolling",
                              options->rolling, "wall_s", f->wall_s, "particle_steps_per_s", f->particle_steps_per_s, "bytes_per_particle",
                              f->bytes_per_particle, "rebuilds", (json_int_t)f->rebuilds, "rebuild_s", f->rebuild_s, "pair_stage_s",
@@ -211,6 +212,7 @@ static status run_bench(const bench_options *options, device *device, bench_figu
     simulation *sim = NULL;
     TRY(settled_bed_make(options->particles, options->rolling, device, options->kernels, &of, why));
     status result = options->export_path ? export_bed(&of, options->export_path, why) : STATUS_OK;
+    of.scene->precision = options->mixed ? PRECISION_MIXED : PRECISION_DOUBLE;
     if (result == STATUS_OK)
         result = simulation_create(of.scene, &of.bed, device, options->kernels, &sim, why);
     if (result == STATUS_OK)
@@ -226,7 +228,7 @@ status bench_bed(const bench_options *options, failure *why)
     bench_figures figures = {0};
     TRY(check_writable(options->export_path, why));
     TRY(check_writable(options->json_path, why));
-    TRY(device_open(options->device, true, &device, why));
+    TRY(device_open(options->device, !options->mixed, &device, why));
     status result = run_bench(options, &device, &figures, why);
     device_close(&device);
     TRY(result);

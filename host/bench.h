@@ -9,6 +9,7 @@ typedef struct bench_options {
     int64_t particles;
     int64_t steps;           /* that are timed; 0: as many as suit the number of particles */
     bool rolling;            /* with rolling resistance */
+    bool mixed;              /* in mixed precision */
     const char *export_path; /* the bed as CSV, or NULL */
     const char *json_path;   /* the figures as JSON, or NULL */
     const char *device;      /* as device_choose */

@@ -34,7 +34,7 @@ static status count_records(simulation *sim, int64_t *made, int64_t *alive, fail
     if (result == STATUS_OK)
         result = launch_run(sim, kernel, "table_bond_sums", chunks, 1, why);
     if (result == STATUS_OK)
-        result = store_read(sim, sim->partial, 0, 16 * (uint64_t)chunks, sum, why);
+        result = store_get(sim, sim->partial, FIELD_EXACT, 0, 2 * chunks, sum, why);
     for (int64_t c = 0; c < chunks && result == STATUS_OK; c++) {
         *made += (int64_t)sum[2 * c];
         *alive += (int64_t)sum[2 * c + 1];

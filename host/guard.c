@@ -35,7 +35,7 @@ static status check_grains(simulation *sim, guard_finding *out, failure *why)
     double *found = malloc(sizeof *found * (size_t)(chunks * FINDINGS + 1));
     if (!found)
         return fail(why, STATUS_ERROR, "out of memory");
-    status result = store_read(sim, sim->partial, 0, 8 * (uint64_t)(chunks * FINDINGS), found, why);
+    status result = store_get(sim, sim->partial, FIELD_EXACT, 0, chunks * FINDINGS, found, why);
     for (int64_t c = 0; c < chunks && result == STATUS_OK; c++) {
         const double *f = found + c * FINDINGS;
         bad = bad < 0.0 ? f[0] : bad;
@@ -82,7 +82,7 @@ static status check_overlaps(simulation *sim, guard_finding *out, failure *why)
     double *found = malloc(sizeof *found * (size_t)(2 * chunks + 1));
     if (!found)
         return fail(why, STATUS_ERROR, "out of memory");
-    status result = store_read(sim, sim->partial, 0, 16 * (uint64_t)chunks, found, why);
+    status result = store_get(sim, sim->partial, FIELD_EXACT, 0, 2 * chunks, found, why);
     for (int64_t c = 0; c < chunks && result == STATUS_OK; c++)
         if (found[2 * c] > most) {
             most = found[2 * c];

@@ -1,8 +1,10 @@
 /* Heat on the device: constants of materials, tables of what surrounds the bed, walls and groups, and what is read back. */
 #include "laws/laws.h"
+#include "precision.h"
 #include "simulation.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,7 +64,7 @@ status heat_create(simulation *sim, failure *why)
     const scene *s = scene_of(sim);
     if (!sim->all.law[SLOT_TEMPERATURE])
         return STATUS_OK;
-    uint64_t constants = 8 * (uint64_t)(live_grain_constant_count(&sim->all) * s->material_count);
+    uint64_t constants = store_item(sim, FIELD_REAL) * (uint64_t)(live_grain_constant_count(&sim->all) * s->material_count);
     TRY(store_buffer(sim, &h->constants, constants, "constants of materials", why));
     if (sim->all.law[SLOT_ENVIRONMENT] != &law_environment_profile)
         return STATUS_OK;
@@ -70,6 +72,8 @@ status heat_create(simulation *sim, failure *why)
     fill_profile(&s->environment.temperature_k, &profile[0]);
     fill_profile(&s->environment.gas_velocity_m_s, &profile[1]);
     TRY(store_buffer(sim, &h->profile, sizeof profile, "the environment", why));
+    if (sim->mixed)
+        precision_split_profiles(profile, 2, sim->origin);
     return store_write(sim, h->profile, 0, sizeof profile, profile, why);
 }
 
@@ -164,9 +168,23 @@ void heat_fill_row(simulation *sim, int row, double time)
         h->group_rows[row * s->group_count + g] = group_row(&s->group[g], time + sim->dt);
 }
 
+/* In place: rows are filled anew for every batch. */
+static void split_rows(simulation *sim, int rows)
+{
+    heat_tables *h = &sim->heat;
+    for (int r = 0; h->environment_rows && r < rows; r++)
+        precision_split(h->environment_rows + r, sizeof *h->environment_rows / sizeof(double));
+    for (int r = 0; h->wall_rows && r < rows * faces_of(sim); r++)
+        precision_split(h->wall_rows + r, offsetof(clast_wall_heat, kind) / sizeof(double));
+    for (int r = 0; h->group_rows && r < rows * groups_of(sim); r++)
+        precision_split(h->group_rows + r, offsetof(clast_group_heat, prescribed) / sizeof(double));
+}
+
 status heat_write_rows(simulation *sim, int rows, failure *why)
 {
     heat_tables *h = &sim->heat;
+    if (sim->mixed)
+        split_rows(sim, rows);
     if (h->environment_rows)
         TRY(store_write(sim, h->environment, 0, sizeof *h->environment_rows * (uint64_t)rows, h->environment_rows, why));
     if (h->wall_rows)
@@ -182,12 +200,12 @@ status heat_upload_constants(simulation *sim, int stage, failure *why)
 {
     if (!sim->live.law[SLOT_TEMPERATURE])
         return STATUS_OK;
-    size_t size = sizeof(double) * (size_t)(live_grain_constant_count(&sim->live) * sim->scene->material_count);
-    double *constants = malloc(size);
+    int64_t count = (int64_t)live_grain_constant_count(&sim->live) * sim->scene->material_count;
+    double *constants = malloc(sizeof *constants * (size_t)count);
     if (!constants)
         return fail(why, STATUS_ERROR, "out of memory");
     live_grain_constants(&sim->live, sim->scene, stage, constants);
-    status result = store_write(sim, sim->heat.constants, 0, size, constants, why);
+    status result = store_put(sim, sim->heat.constants, FIELD_REAL, 0, count, constants, why);
     free(constants);
     return result;
 }
@@ -206,7 +224,7 @@ status heat_upload_bed(simulation *sim, const bed *bed, failure *why)
         group[i] = real && sim->scene->group[bed->group[i]].thermal != THERMAL_FREE ? bed->group[i] : -1;
     }
     if (result == STATUS_OK)
-        result = store_write(sim, store_find(sim, "temperature")->mem, 0, 8 * (uint64_t)sim->stride, temperature, why);
+        result = store_put_grains(sim, store_find(sim, "temperature"), sim->stride, temperature, why);
     if (result == STATUS_OK && store_find(sim, "thermal_group"))
         result = store_write(sim, store_find(sim, "thermal_group")->mem, 0, 4 * (uint64_t)sim->stride, group, why);
     free(temperature);
@@ -221,7 +239,7 @@ status heat_observe(simulation *sim, heat_sums *out, failure *why)
     int64_t chunks = (sim->id_count + CHUNK - 1) / CHUNK;
     clast_launch launch = launch_values(sim);
     cl_kernel kernel = launch_kernel(sim, "heat_sums");
-    double sum[SUMS] = {[3] = INFINITY};
+    double sum[SUMS] = {[3] = -INFINITY};
     *out = (heat_sums){.lowest = NAN, .mean = NAN, .highest = NAN};
     TRY(observe_where(sim, why));
     TRY(simulation_pose_now(sim, why));
@@ -232,11 +250,11 @@ status heat_observe(simulation *sim, heat_sums *out, failure *why)
     double *partial = malloc(sizeof *partial * (size_t)(chunks * SUMS + 1));
     if (!partial)
         return fail(why, STATUS_ERROR, "out of memory");
-    status result = store_read(sim, sim->partial, 0, 8 * (uint64_t)(chunks * SUMS), partial, why);
+    status result = store_get(sim, sim->partial, FIELD_EXACT, 0, chunks * SUMS, partial, why);
     for (int64_t c = 0; c < chunks && result == STATUS_OK; c++)
         for (int q = 0; q < SUMS; q++) {
             double value = partial[c * SUMS + q];
-            sum[q] = q == 3 ? fmin(sum[q], value) : q == 4 ? fmax(sum[q], value) : sum[q] + value;
+            sum[q] = q == 3 || q == 4 ? fmax(sum[q], value) : sum[q] + value;
         }
     free(partial);
     TRY(result);
@@ -244,7 +262,7 @@ status heat_observe(simulation *sim, heat_sums *out, failure *why)
     memcpy(out->tally, sum + 5, sizeof out->tally);
     if (sum[2] > 0.0) {
         out->mean = sum[1] / sum[2];
-        out->lowest = sum[3];
+        out->lowest = -sum[3];
         out->highest = sum[4];
     }
     return STATUS_OK;
@@ -268,11 +286,11 @@ static status enqueue_limit(simulation *sim, double hottest, int64_t chunks, fai
     clast_launch launch = launch_values(sim);
     cl_kernel records = launch_kernel(sim, "heat_conductances"), grains = launch_kernel(sim, "heat_limit");
     TRY(simulation_pose_now(sim, why));
-    TRY_CL(clSetKernelArg(records, 0, sizeof launch, &launch), "heat_conductances");
+    TRY(launch_pass(records, "heat_conductances", &launch, why));
     TRY(launch_bind(sim, "heat_conductances", 1, why));
     TRY(launch_run(sim, records, "heat_conductances", sim->table.record_count, CLAST_BLOCK, why));
     TRY(observe_partial(sim, LIMITS * chunks, why));
-    TRY(launch_set(grains, "heat_limit", why, "Lmd", &launch, sim->partial, hottest));
+    TRY(launch_set(grains, "heat_limit", why, sim->mixed ? "Lmf" : "Lmd", &launch, sim->partial, hottest));
     TRY(launch_bind(sim, "heat_limit", 3, why));
     return launch_run(sim, grains, "heat_limit", chunks, 1, why);
 }
@@ -289,7 +307,7 @@ status heat_limit_find(simulation *sim, heat_limit *out, failure *why)
     double *partial = malloc(sizeof *partial * (size_t)(LIMITS * chunks + 1)), least[LIMITS] = {INFINITY, INFINITY, INFINITY, INFINITY};
     if (!partial)
         return fail(why, STATUS_ERROR, "out of memory");
-    status result = store_read(sim, sim->partial, 0, 8 * (uint64_t)(LIMITS * chunks), partial, why);
+    status result = store_get(sim, sim->partial, FIELD_EXACT, 0, LIMITS * chunks, partial, why);
     for (int64_t n = 0; n < LIMITS * chunks && result == STATUS_OK; n++)
         if (partial[n] < 1e29)
             least[n % LIMITS] = fmin(least[n % LIMITS], partial[n]);

@@ -1,5 +1,6 @@
 /* Kernels of the stage's program, and their arguments: those of the core by name, then what each live law adds, in the order of the slots. */
 #include "laws/fields.h"
+#include "precision.h"
 #include "program.h"
 #include "simulation.h"
 
@@ -139,12 +140,13 @@ static bool has_kernel(const simulation *sim, const char *name)
 status launch_open(simulation *sim, failure *why)
 {
     const char *files[64], *table_files[LIVE_TABLE_FILES];
-    char constants[8192];
+    char constants[8192], table_constants[256];
+    live_table_constants(&sim->live, table_constants, sizeof table_constants);
     live_constants(&sim->live, sim->scene, constants, sizeof constants);
     TRY(open_program(sim, constants, files, live_files(&sim->live, files, 64), &sim->program, why));
-    TRY(open_program(sim, "", table_files, live_table_files(&sim->live, table_files), &sim->table_program, why));
+    TRY(open_program(sim, table_constants, table_files, live_table_files(&sim->live, table_files), &sim->table_program, why));
     static const char *const names[] = {"pair_stage",       "pair_probe",      "particle_stage",    "scan_chunks",       "scan_sums",
-                                        "scan_write",       "table_bin",       "table_order",       "table_order_cells", "table_permute_real",
+                                        "scan_write",       "table_bin",       "table_order",       "table_order_cells", "table_permute_real", "table_permute_exact",
                                         "table_permute_int", "table_count",    "table_fill",        "table_pad",         "table_widths",
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
@@ -186,7 +188,8 @@ cl_kernel launch_kernel(simulation *sim, const char *name)
 clast_launch launch_values(const simulation *sim)
 {
     const domain *d = &sim->scene->domain;
-    double travel = 0.5 * sim->table.skin;
+    /* what rounding takes of a distance in mixed precision is far below this share of the skin */
+    double travel = 0.5 * sim->table.skin * (sim->mixed ? 1.0 - 1e-3 : 1.0);
     clast_launch v = {
         .dt = sim->dt,
         .lag = sim->lag,
@@ -197,15 +200,25 @@ clast_launch launch_values(const simulation *sim)
         .first_wall_group = sim->table.wall_base / CLAST_BLOCK,
         .face_count = sim->face_count,
         .mover_count = sim->mover_count,
+        .mixed = sim->mixed,
     };
     for (int c = 0; c < 3; c++) {
         bool periodic = d->given && d->periodic[c];
         v.gravity[c] = sim->gravity[c];
-        v.low[c] = d->given ? d->low_m[c] : -1e30;
-        v.high[c] = d->given ? d->high_m[c] : 1e30;
+        v.low[c] = d->given ? d->low_m[c] - sim->origin[c] : -1e30;
+        v.high[c] = d->given ? d->high_m[c] - sim->origin[c] : 1e30;
         v.length[c] = periodic ? d->high_m[c] - d->low_m[c] : 0.0;
     }
     return v;
+}
+
+status launch_pass(cl_kernel kernel, const char *name, const clast_launch *launch, failure *why)
+{
+    clast_launch passed = *launch;
+    if (passed.mixed)
+        precision_split_launch(&passed);
+    TRY_CL(clSetKernelArg(kernel, 0, sizeof passed, &passed), name);
+    return STATUS_OK;
 }
 
 status launch_run(simulation *sim, cl_kernel kernel, const char *name, int64_t items, int64_t group, failure *why)
@@ -235,9 +248,14 @@ status launch_set(cl_kernel kernel, const char *name, failure *why, const char *
         } else if (types[a] == 'd') {
             double number = va_arg(values, double);
             code = clSetKernelArg(kernel, a, sizeof number, &number);
+        } else if (types[a] == 'f') {
+            float number = (float)va_arg(values, double);
+            code = clSetKernelArg(kernel, a, sizeof number, &number);
         } else {
-            const clast_launch *launch = va_arg(values, const clast_launch *);
-            code = clSetKernelArg(kernel, a, sizeof *launch, launch);
+            clast_launch launch = *va_arg(values, const clast_launch *);
+            if (launch.mixed)
+                precision_split_launch(&launch);
+            code = clSetKernelArg(kernel, a, sizeof launch, &launch);
         }
     }
     va_end(values);

@@ -6,6 +6,7 @@
 
 /* In the order in which the stages call them. Slots marked derived are chosen by the scene as a whole, not listed under `effects:`. */
 typedef enum slot_id {
+    SLOT_PRECISION,   /* derived: double, or float with what takes small increments kept whole */
     SLOT_COMPOSITION, /* derived: one material or several */
     SLOT_PERIODIC,    /* derived: nearest image */
     SLOT_MOTION,      /* derived: all free, or groups with prescribed motion */
@@ -62,7 +63,11 @@ typedef struct law_option {
 #define LAW_FILES_MAX 3
 
 typedef enum field_extent { PER_PARTICLE, PER_RECORD, PER_SCENE /* faces of walls, prescribed motions: the host keeps them */ } field_extent;
-typedef enum field_type { FIELD_REAL, FIELD_INT } field_type;
+typedef enum field_type {
+    FIELD_REAL,  /* double, or float in mixed precision */
+    FIELD_EXACT, /* 64 bits in either: what takes small increments over many steps, or what an overlap is a small difference of */
+    FIELD_INT
+} field_type;
 typedef enum field_role {
     FIELD_STATE,   /* sorted with the particles, kept in checkpoints */
     FIELD_HISTORY, /* of a contact: carried over rebuilds by partner, kept in checkpoints, negated when a pair changes its owner */

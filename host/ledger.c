@@ -32,7 +32,7 @@ status ledger_leave(simulation *sim, const int32_t *index, int64_t count, failur
     for (int f = 0; f < LEDGER_FIELDS && sim->all.law[SLOT_LEDGER]; f++) {
         stored_field *stored = store_find(sim, sums[f]->name);
         double *value = malloc(3 * sizeof *value * (size_t)sim->stride);
-        status result = value ? store_read(sim, stored->mem, 0, 24 * (uint64_t)sim->stride, value, why) : fail(why, STATUS_ERROR, "out of memory");
+        status result = value ? store_get_grains(sim, stored, sim->stride, value, why) : fail(why, STATUS_ERROR, "out of memory");
         for (int64_t k = 0; k < count && result == STATUS_OK; k++)
             for (int c = 0; c < 3; c++)
                 sim->left_energy[3 * f + c] += value[3 * (int64_t)index[k] + c];

@@ -22,7 +22,7 @@ static status live_limit(simulation *sim, double *normal, double *turning, failu
     int64_t chunks = (sim->count + CHUNK - 1) / CHUNK;
     *normal = *turning = INFINITY;
     TRY(simulation_pose_now(sim, why));
-    TRY_CL(clSetKernelArg(records, 0, sizeof launch, &launch), "limit_records");
+    TRY(launch_pass(records, "limit_records", &launch, why));
     TRY(launch_run(sim, records, "limit_records", t->record_count, CLAST_BLOCK, why));
     TRY(observe_partial(sim, 2 * chunks + 4, why));
     TRY(launch_set(grains, "limit_particles", why, torque ? "Lmmmmmmm" : "Lmmmmmm", &launch, t->slot_offset[t->now], t->slots[t->now],
@@ -32,7 +32,7 @@ static status live_limit(simulation *sim, double *normal, double *turning, failu
     double *partial = malloc(sizeof *partial * (size_t)(2 * chunks + 1));
     if (!partial)
         return fail(why, STATUS_ERROR, "out of memory");
-    status result = store_read(sim, sim->partial, 0, 16 * (uint64_t)chunks, partial, why);
+    status result = store_get(sim, sim->partial, FIELD_EXACT, 0, 2 * chunks, partial, why);
     for (int64_t c = 0; c < chunks && result == STATUS_OK; c++) {
         *normal = fmin(*normal, partial[2 * c]);
         *turning = fmin(*turning, partial[2 * c + 1]);
@@ -80,9 +80,9 @@ static status expect_class(simulation *sim, int a, int party, double speed, doub
     double mi = 4.0 / 3.0 * M_PI * ri * ri * ri * scene_material(scene, a, &property_density);
     double mj = wall ? 0.0 : 4.0 / 3.0 * M_PI * rj * rj * rj * scene_material(scene, party, &property_density);
     cl_kernel kernel = launch_kernel(sim, "limit_expected");
-    TRY(launch_set(kernel, "limit_expected", why, "mmidddddd", sim->constants, sim->partial, (cl_int)(a * parties + party), ri, rj, mi, mj, speed, weight));
+    TRY(launch_set(kernel, "limit_expected", why, sim->mixed ? "mmiffffff" : "mmidddddd", sim->constants, sim->partial, (cl_int)(a * parties + party), ri, rj, mi, mj, speed, weight));
     TRY(launch_run(sim, kernel, "limit_expected", 1, 1, why));
-    TRY(store_read(sim, sim->partial, 0, sizeof result, result, why));
+    TRY(store_get(sim, sim->partial, FIELD_EXACT, 0, 4, result, why));
     *out = (expected_contact){result[0], result[1], result[2], result[3]};
     return STATUS_OK;
 }

@@ -129,6 +129,8 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
     }
     bool turning = law_turns(out->law[SLOT_BOND]) || scene_effect(scene, -1, SLOT_TANGENTIAL) || scene_effect(scene, -1, SLOT_ROLLING) ||
                    scene_outputs(scene, "spin") || scene_outputs(scene, "orientation") || scene_outputs(scene, "rotational_energy") || any_spin(bed);
+    if (scene->precision == PRECISION_MIXED)
+        out->law[SLOT_PRECISION] = &law_precision_mixed;
     if (scene->material_count > 1)
         out->law[SLOT_COMPOSITION] = &law_composition_several;
     if (scene->domain.given && (scene->domain.periodic[0] || scene->domain.periodic[1] || scene->domain.periodic[2]))
@@ -176,7 +178,7 @@ void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, liv
 static const char *none_file(slot_id slot)
 {
     static const char *const files[SLOT_COUNT] = {
-        [SLOT_COMPOSITION] = "none/composition.cl", [SLOT_PERIODIC] = "none/periodic.cl",       [SLOT_MOTION] = "none/motion.cl",
+        [SLOT_PRECISION] = "precision/double.cl",   [SLOT_COMPOSITION] = "none/composition.cl", [SLOT_PERIODIC] = "none/periodic.cl",       [SLOT_MOTION] = "none/motion.cl",
         [SLOT_ROTATION] = "none/rotation.cl",       [SLOT_NORMAL] = "none/normal.cl",           [SLOT_BONDING] = "none/bonding.cl",
         [SLOT_BOND] = "none/bond.cl",               [SLOT_COHESION] = "none/cohesion.cl",       [SLOT_SLIP] = "none/slip.cl",
         [SLOT_TANGENTIAL] = "none/tangential.cl",   [SLOT_ROLLING] = "none/rolling.cl",         [SLOT_WALLS] = "none/walls.cl",
@@ -217,9 +219,10 @@ int live_files(const live_laws *live, const char **files, int max)
 
 int live_table_files(const live_laws *live, const char **files)
 {
-    const law *periodic = live->law[SLOT_PERIODIC];
+    static const slot_id slots[] = {SLOT_PRECISION, SLOT_PERIODIC};
     int count = 0;
-    files[count++] = periodic ? periodic->kernel_file : none_file(SLOT_PERIODIC);
+    for (size_t s = 0; s < sizeof slots / sizeof *slots; s++)
+        files[count++] = live->law[slots[s]] ? live->law[slots[s]]->kernel_file : none_file(slots[s]);
     files[count++] = "stage/scan.cl";
     files[count++] = "stage/table.cl";
     if (live->law[SLOT_WALLS])
@@ -227,6 +230,14 @@ int live_table_files(const live_laws *live, const char **files)
     if (live->law[SLOT_BOND])
         files[count++] = "stage/table_bonds.cl";
     return count;
+}
+
+void live_table_constants(const live_laws *live, char *text, size_t size)
+{
+    const law *precision = live->law[SLOT_PRECISION];
+    text[0] = '\0';
+    if (precision)
+        precision->constants(live->option[SLOT_PRECISION], text, size);
 }
 
 int live_constant_count(const live_laws *live)

@@ -36,7 +36,17 @@ static status read_partial(simulation *sim, int64_t doubles, double **out, failu
     *out = malloc(sizeof **out * (size_t)(doubles + 1));
     if (!*out)
         return fail(why, STATUS_ERROR, "out of memory");
-    return store_read(sim, sim->partial, 0, 8 * (uint64_t)doubles, *out, why);
+    return store_get(sim, sim->partial, FIELD_EXACT, 0, doubles, *out, why);
+}
+
+/* Potential energy and angular momentum about the scene's origin, from those about the device's. */
+static void move_sums(const simulation *sim, double *sum)
+{
+    const double *o = sim->origin, *p = sum + 4;
+    for (int c = 0; c < 3 && sim->mixed; c++) {
+        sum[2] -= sum[3] * sim->gravity[c] * o[c];
+        sum[7 + c] += o[(c + 1) % 3] * p[(c + 2) % 3] - o[(c + 2) % 3] * p[(c + 1) % 3];
+    }
 }
 
 status observe_velocities(simulation *sim, cl_mem *velocity, cl_mem *spin, failure *why)
@@ -77,6 +87,7 @@ static status sum_particles(simulation *sim, cl_mem velocity, cl_mem spin, parti
             sum[q] = q == 10 ? fmax(sum[q], partial[c * PARTICLE_SUMS + q]) : sum[q] + partial[c * PARTICLE_SUMS + q];
     free(partial);
     TRY(result);
+    move_sums(sim, sum);
     *out = (particle_sums){sum[0], sum[1], sum[2], sum[3], {sum[4], sum[5], sum[6]}, {sum[7], sum[8], sum[9]}, sqrt(sum[10]), sum[11]};
     return STATUS_OK;
 }
@@ -107,7 +118,7 @@ static status read_component(simulation *sim, cl_mem mem, int component, double 
     *out = malloc(sizeof **out * (size_t)(records + 1));
     if (!*out)
         return fail(why, STATUS_ERROR, "out of memory");
-    return store_read(sim, mem, 8 * (uint64_t)(component * sim->table.record_stride), 8 * (uint64_t)records, *out, why);
+    return store_get(sim, mem, FIELD_REAL, component * sim->table.record_stride, records, *out, why);
 }
 
 static status run_on_records(simulation *sim, const char *name, failure *why)
@@ -116,7 +127,7 @@ static status run_on_records(simulation *sim, const char *name, failure *why)
     cl_kernel kernel = launch_kernel(sim, name);
     TRY(simulation_pose_now(sim, why));
     launch.dt = 0.0;
-    TRY_CL(clSetKernelArg(kernel, 0, sizeof launch, &launch), name);
+    TRY(launch_pass(kernel, name, &launch, why));
     return launch_run(sim, kernel, name, sim->table.record_count, CLAST_BLOCK, why);
 }
 
@@ -171,12 +182,12 @@ static status read_ints(simulation *sim, cl_mem mem, int64_t count, int32_t **ou
     return store_read(sim, mem, 0, 4 * (uint64_t)count, *out, why);
 }
 
-static status read_doubles(simulation *sim, cl_mem mem, int64_t first, int64_t count, double **out, failure *why)
+static status read_grains(simulation *sim, const stored_field *stored, double **out, failure *why)
 {
-    *out = malloc(sizeof **out * (size_t)(count + 1));
+    *out = malloc(sizeof **out * (size_t)(stored->field->components * sim->stride + 1));
     if (!*out)
         return fail(why, STATUS_ERROR, "out of memory");
-    return store_read(sim, mem, 8 * (uint64_t)first, 8 * (uint64_t)count, *out, why);
+    return store_get_grains(sim, stored, sim->stride, *out, why);
 }
 
 static status read_records(simulation *sim, record_arrays *r, failure *why)
@@ -195,8 +206,8 @@ static status read_records(simulation *sim, record_arrays *r, failure *why)
     TRY(read_ints(sim, t->owner[t->now], t->record_count, &r->owner, why));
     TRY(read_ints(sim, t->other[t->now], t->record_count, &r->other, why));
     TRY(read_ints(sim, store_find(sim, "id")->mem, sim->stride, &r->id, why));
-    TRY(read_doubles(sim, store_find(sim, "radius")->mem, 0, sim->stride, &r->radius, why));
-    TRY(read_doubles(sim, store_find(sim, "position")->mem, 0, 3 * sim->stride, &r->position, why));
+    TRY(read_grains(sim, store_find(sim, "radius"), &r->radius, why));
+    TRY(read_grains(sim, store_find(sim, "position"), &r->position, why));
     if (heat)
         TRY(read_component(sim, heat->mem, 0, &r->heat, why));
     for (int c = 0; c < 3; c++) {
@@ -358,10 +369,11 @@ status observe_field(simulation *sim, const char *name, double **out, failure *w
     if (!stored)
         return fail(why, STATUS_ERROR, "internal: no field named %s", name);
     int components = stored->field->components;
-    cl_mem from = stored->mem, velocity, spin;
+    stored_field from = *stored;
+    cl_mem velocity, spin;
     if (strcmp(name, "velocity") == 0 || strcmp(name, "spin") == 0) {
         TRY(observe_velocities(sim, &velocity, &spin, why));
-        from = name[0] == 'v' ? velocity : spin ? spin : stored->mem;
+        from.mem = name[0] == 'v' ? velocity : spin ? spin : stored->mem;
     }
     int32_t *id = NULL;
     double *rows = NULL;
@@ -370,7 +382,7 @@ status observe_field(simulation *sim, const char *name, double **out, failure *w
     for (int64_t n = 0; result == STATUS_OK && n < sim->id_count * components; n++)
         (*out)[n] = NAN;
     if (result == STATUS_OK)
-        result = read_doubles(sim, from, 0, components * sim->stride, &rows, why);
+        result = read_grains(sim, &from, &rows, why);
     for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++)
         memcpy(*out + (int64_t)id[i] * components, rows + i * components, sizeof *rows * (size_t)components);
     free(rows);

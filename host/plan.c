@@ -82,7 +82,7 @@ static void collect_memory(const simulation *sim, plan *out)
         out->field[f] = (plan_field){of->name, of->extent == PER_RECORD, field_bytes(sim, of)};
         fields += out->field[f].bytes;
         if (of->extent == PER_RECORD)
-            record += (of->type == FIELD_REAL ? 8.0 : 4.0) * of->components;
+            record += (double)store_item(sim, of->type) * of->components;
     }
     out->bytes = sim->bytes;
     out->table_bytes = table_bytes(sim);
@@ -192,7 +192,7 @@ status plan_command(const char *scene_path, int set_count, char *const *sets, co
     TRY(scene_read(scene_path, set_count, sets, &scene, why));
     status result = bed_generate(scene, &bed, why);
     if (result == STATUS_OK)
-        result = device_open(device_choice, true, &device, why);
+        result = device_open(device_choice, scene->precision != PRECISION_MIXED, &device, why);
     if (result == STATUS_OK)
         result = plan_scene(scene, &bed, &device, kernels, json, probe, why);
     device_close(&device);

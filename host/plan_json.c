@@ -131,7 +131,7 @@ status plan_write_json(const plan *p, failure *why)
     json_object_set_new(root, "title", text_or_null(p->scene->title));
     json_object_set_new(root, "scene", json_string(p->scene->path));
     json_object_set_new(root, "dimensions", json_integer(p->scene->dimensions));
-    json_object_set_new(root, "precision", json_string("double"));
+    json_object_set_new(root, "precision", json_string(precision_name(p->scene)));
     json_object_set_new(root, "device", json_string(device));
     json_object_set_new(root, "particles", json_integer(p->particles));
     json_object_set_new(root, "groups", groups(p));

@@ -208,8 +208,8 @@ void plan_write_text(const plan *p)
 {
     char device[1024];
     device_describe(p->device, device, sizeof device);
-    printf("%s\n  scene: %s, %d dimensions, double precision\n  device: %s\n", p->scene->title ? p->scene->title : "Untitled",
-           p->scene->path, p->scene->dimensions, device);
+    printf("%s\n  scene: %s, %d dimensions, %s precision\n  device: %s\n", p->scene->title ? p->scene->title : "Untitled",
+           p->scene->path, p->scene->dimensions, precision_name(p->scene), device);
     print_particles(p);
     print_laws(p);
     print_bonds(p);

@@ -360,8 +360,13 @@ static status prepare(run *r, const run_options *options, const char *results_pa
     r->checkpoint_path = checkpoint_path_of(results_path);
     if (!r->results_path || !r->checkpoint_path)
         return fail(why, STATUS_ERROR, "out of memory");
-    TRY(device_open(options->device, true, &r->device, why));
+    TRY(device_open(options->device, r->scene->precision != PRECISION_MIXED, &r->device, why));
     return simulation_create(r->scene, &r->bed, &r->device, options->kernels, &r->sim, why);
+}
+
+static const char *type_name(field_type type)
+{
+    return type == FIELD_REAL ? "real" : type == FIELD_EXACT ? "exact" : "int";
 }
 
 /* The live laws of every slot, and what is stored for them. */
@@ -377,7 +382,7 @@ static char *plan_of(const simulation *sim)
             fprintf(out, "%s: %s (%s)\n", slot_name(slot), sim->all.law[slot]->name, sim->all.law[slot]->kernel_file);
     for (int f = 0; f < sim->field_count; f++)
         fprintf(out, "field %s: %d x %s a %s\n", sim->field[f].field->name, sim->field[f].field->components,
-                sim->field[f].field->type == FIELD_REAL ? "real" : "int", sim->field[f].field->extent == PER_PARTICLE ? "grain" : "contact record");
+                type_name(sim->field[f].field->type), sim->field[f].field->extent == PER_PARTICLE ? "grain" : "contact record");
     fclose(out);
     return text;
 }
@@ -410,6 +415,8 @@ static status finish(run *r, status result, failure *why)
 static status begin_scene(run *r, const run_options *options, failure *why)
 {
     TRY(scene_read(options->scene_path, options->set_count, options->sets, &r->scene, why));
+    if (options->precision)
+        precision_find(options->precision, &r->scene->precision);
     TRY(bed_generate(r->scene, &r->bed, why));
     TRY(prepare(r, options, options->out, why));
     warn_of_overlaps(r);
@@ -513,6 +520,15 @@ static status load_measures(simulation *sim, const bundle *in, const char *path,
     return STATUS_OK;
 }
 
+/* A run goes on in the precision that it began in. */
+static status precision_of(const bundle *in, const char *path, scene *scene, failure *why)
+{
+    const bundle_entry *mixed;
+    TRY(bundle_get(in, path, "run/mixed", BUNDLE_I64, 1, 1, &mixed, why));
+    scene->precision = *(int64_t *)mixed->data ? PRECISION_MIXED : PRECISION_DOUBLE;
+    return STATUS_OK;
+}
+
 static status resume_from(run *r, const run_options *options, const bundle *state, failure *why)
 {
     char *text = NULL, *path = NULL, *results = NULL;
@@ -524,6 +540,8 @@ static status resume_from(run *r, const run_options *options, const bundle *stat
         result = text_of(state, from, "run/results", &results, why);
     if (result == STATUS_OK)
         result = scene_read_text(text, path, 0, NULL, &r->scene, why);
+    if (result == STATUS_OK)
+        result = precision_of(state, from, r->scene, why);
     if (result == STATUS_OK)
         result = bed_of(state, from, r->scene, &r->bed, why);
     if (result == STATUS_OK)

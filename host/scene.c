@@ -9,6 +9,22 @@
 
 #define HIDERS_MAX 4
 
+bool precision_find(const char *word, precision *out)
+{
+    static const char *const words[] = {[PRECISION_AUTO] = "auto", [PRECISION_DOUBLE] = "double", [PRECISION_MIXED] = "mixed"};
+    for (int k = 0; k < 3; k++)
+        if (strcmp(words[k], word) == 0) {
+            *out = (precision)k;
+            return true;
+        }
+    return false;
+}
+
+const char *precision_name(const scene *scene)
+{
+    return scene->precision == PRECISION_MIXED ? "mixed" : "double";
+}
+
 static int property_index(const property *const *all, const property *wanted)
 {
     for (int k = 0; all[k]; k++)

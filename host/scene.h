@@ -11,6 +11,11 @@ typedef struct place {
 } place;
 
 typedef enum precision { PRECISION_AUTO, PRECISION_DOUBLE, PRECISION_MIXED } precision;
+/* What `auto|double|mixed` names; false where it is none of them. */
+bool precision_find(const char *word, precision *out);
+struct scene;
+/* What the scene runs in: `double` or `mixed`. */
+const char *precision_name(const struct scene *scene);
 typedef enum integrator { INTEGRATOR_SEMI_IMPLICIT_EULER, INTEGRATOR_VELOCITY_VERLET } integrator;
 
 typedef struct domain {

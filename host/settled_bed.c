@@ -152,6 +152,8 @@ static status pour(const bed_layout *l, device *device, const char *kernels, bed
     simulation *sim = NULL;
     bool slippery = l->columns * l->rows > 1;
     TRY(make_scene(l->part, l->part_x, l->part_y, l->height, false, true, slippery, &poured, why));
+    if (!device->info.fp64)
+        poured->precision = PRECISION_MIXED;
     status result = bed_generate(poured, out, why);
     if (result == STATUS_OK)
         result = simulation_create(poured, out, device, kernels, &sim, why);

@@ -2,6 +2,7 @@
 
 #include "bond_figures.h"
 #include "laws/fields.h"
+#include "precision.h"
 #include "property.h"
 
 #include <math.h>
@@ -36,6 +37,18 @@ static void measure_bed(simulation *sim, const bed *bed)
     }
 }
 
+/* Pairs of floats resolve a position by its distance from the origin, so that is put into the bed, on a coarse grid of powers of two. Near
+ * the scene's own origin it stays there. */
+static void choose_origin(simulation *sim)
+{
+    double extent = 2.0 * sim->radius_max;
+    for (int c = 0; c < 3; c++)
+        extent = fmax(extent, sim->bed_high[c] - sim->bed_low[c]);
+    double grid = exp2(ceil(log2(extent)) + 2.0);
+    for (int c = 0; sim->mixed && isfinite(grid) && c < 3; c++)
+        sim->origin[c] = grid * rint(0.5 * (sim->bed_low[c] + sim->bed_high[c]) / grid);
+}
+
 static status check_periods(const simulation *sim, failure *why)
 {
     const domain *d = &sim->scene->domain;
@@ -68,7 +81,7 @@ static status check_round_walls(const simulation *sim, failure *why)
 
 static status upload_vectors(simulation *sim, const char *name, const double (*value)[3], int64_t count, failure *why)
 {
-    return store_write(sim, store_find(sim, name)->mem, 0, 24 * (uint64_t)count, value, why);
+    return store_put_grains(sim, store_find(sim, name), count, &value[0][0], why);
 }
 
 /* Grains that pad the last block have unit mass and radius, so that nothing divides by zero. */
@@ -87,9 +100,9 @@ static status upload_scalars(simulation *sim, const bed *bed, failure *why)
     }
     uint64_t n = (uint64_t)sim->stride;
     if (result == STATUS_OK)
-        result = store_write(sim, store_find(sim, "radius")->mem, 0, 8 * n, radius, why);
+        result = store_put_grains(sim, store_find(sim, "radius"), sim->stride, radius, why);
     if (result == STATUS_OK)
-        result = store_write(sim, store_find(sim, "mass")->mem, 0, 8 * n, mass, why);
+        result = store_put_grains(sim, store_find(sim, "mass"), sim->stride, mass, why);
     if (result == STATUS_OK)
         result = store_write(sim, store_find(sim, "id")->mem, 0, 4 * n, id, why);
     if (result == STATUS_OK && store_find(sim, "material"))
@@ -106,7 +119,7 @@ static status upload_bed(simulation *sim, const bed *bed, failure *why)
     TRY(upload_vectors(sim, "position", (const double(*)[3])bed->position, bed->count, why));
     TRY(upload_vectors(sim, "velocity", (const double(*)[3])bed->velocity, bed->count, why));
     if (store_find(sim, "scalar") && bed->scalar)
-        TRY(store_write(sim, store_find(sim, "scalar")->mem, 0, 8 * (uint64_t)bed->count, bed->scalar, why));
+        TRY(store_put_grains(sim, store_find(sim, "scalar"), bed->count, bed->scalar, why));
     if (store_find(sim, "spin"))
         TRY(upload_vectors(sim, "spin", (const double(*)[3])bed->spin, bed->count, why));
     TRY(upload_scalars(sim, bed, why));
@@ -114,7 +127,9 @@ static status upload_bed(simulation *sim, const bed *bed, failure *why)
     stored_field *orientation = store_find(sim, "orientation");
     if (!orientation)
         return STATUS_OK;
-    const double upright[4] = {1.0, 0.0, 0.0, 0.0};
+    double upright[4] = {1.0, 0.0, 0.0, 0.0};
+    if (sim->mixed)
+        precision_split(upright, 4);
     TRY_CL(clEnqueueFillBuffer(sim->device->queue, orientation->mem, upright, sizeof upright, 0, sizeof upright * (size_t)sim->stride, 0, NULL, NULL),
            "orientation");
     return STATUS_OK;
@@ -165,7 +180,8 @@ static status create_buffers(simulation *sim, failure *why)
     TRY(store_buffer(sim, &sim->where, 4 * (uint64_t)sim->stride, "indices of ids", why));
     TRY(store_buffer(sim, &sim->control, sizeof(clast_control), "control words", why));
     int width = live_constant_count(&sim->all);
-    TRY(store_buffer(sim, &sim->constants, 8 * (uint64_t)(width * live_class_count(&sim->all, sim->scene)), "contact constants", why));
+    int64_t constants = (int64_t)width * live_class_count(&sim->all, sim->scene);
+    TRY(store_buffer(sim, &sim->constants, store_item(sim, FIELD_REAL) * (uint64_t)constants, "contact constants", why));
     TRY(heat_create(sim, why));
     return table_create(sim, why);
 }
@@ -183,7 +199,9 @@ status simulation_create(const scene *scene, const bed *bed, device *device, con
     sim->stride = (bed->count + CLAST_BLOCK - 1) / CLAST_BLOCK * CLAST_BLOCK;
     sim->group_held = calloc((size_t)scene->group_count + 1, sizeof *sim->group_held);
     live_laws_of(scene, bed, &sim->all);
+    sim->mixed = sim->all.law[SLOT_PRECISION] != NULL;
     measure_bed(sim, bed);
+    choose_origin(sim);
     sim->table.skin_is_given = !isnan(scene->table.skin_m);
     sim->table.skin = sim->table.skin_is_given ? scene->table.skin_m : 0.1 * sim->mean_radius;
     sim->batch_limit = scene->table.batch_steps > 0 ? scene->table.batch_steps : 64;
@@ -259,6 +277,31 @@ static double time_after(const simulation *sim, int64_t steps)
     return sim->segment_time + (double)(sim->step + steps - sim->segment_step) * sim->dt;
 }
 
+/* In mixed precision by way of a copy: the host goes on reading its own rows. */
+static status send_rows(simulation *sim, int rows, failure *why)
+{
+    uint64_t faces = sizeof(clast_face) * (uint64_t)(sim->face_count * rows), movers = sizeof(clast_mover) * (uint64_t)(sim->mover_count * rows);
+    if (!sim->mixed) {
+        TRY(store_write(sim, sim->faces, 0, faces, sim->face_rows, why));
+        return store_write(sim, sim->movers, 0, movers, sim->mover_rows, why);
+    }
+    clast_face *face = malloc(faces + 1);
+    clast_mover *mover = malloc(movers + 1);
+    status result = face && mover ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
+    if (result == STATUS_OK) {
+        memcpy(face, sim->face_rows, faces);
+        memcpy(mover, sim->mover_rows, movers);
+        precision_split_faces(face, sim->face_count * rows, sim->origin);
+        precision_split_movers(mover, sim->mover_count * rows, sim->origin);
+        result = store_write(sim, sim->faces, 0, faces, face, why);
+    }
+    if (result == STATUS_OK)
+        result = store_write(sim, sim->movers, 0, movers, mover, why);
+    free(face);
+    free(mover);
+    return result;
+}
+
 static status write_rows(simulation *sim, int rows, failure *why)
 {
     for (int row = 0; row < rows; row++) {
@@ -273,10 +316,7 @@ static status write_rows(simulation *sim, int rows, failure *why)
             sim->mover_rows[row * sim->mover_count + g] = moving_body_step(&sim->group_body[g], time, sim->dt);
         heat_fill_row(sim, row, time);
     }
-    if (sim->face_count > 0)
-        TRY(store_write(sim, sim->faces, 0, sizeof(clast_face) * (uint64_t)(sim->face_count * rows), sim->face_rows, why));
-    if (sim->mover_count > 0)
-        TRY(store_write(sim, sim->movers, 0, sizeof(clast_mover) * (uint64_t)(sim->mover_count * rows), sim->mover_rows, why));
+    TRY(send_rows(sim, rows, why));
     return heat_write_rows(sim, rows, why);
 }
 
@@ -372,20 +412,20 @@ static status upload_movers(simulation *sim, failure *why)
     if (!mover)
         return STATUS_OK;
     uint64_t n = (uint64_t)sim->stride;
-    cl_mem position = store_find(sim, "position")->mem, velocity = store_find(sim, "velocity")->mem;
+    stored_field *position = store_find(sim, "position"), *velocity = store_find(sim, "velocity");
     int32_t *id = malloc(n * sizeof *id);
     double(*x)[3] = malloc(n * sizeof *x), (*v)[3] = malloc(n * sizeof *v);
     status result = id && x && v ? store_read(sim, store_find(sim, "id")->mem, 0, 4 * n, id, why) : fail(why, STATUS_ERROR, "out of memory");
     if (result == STATUS_OK)
-        result = store_read(sim, position, 0, 24 * n, x, why);
+        result = store_get_grains(sim, position, sim->stride, &x[0][0], why);
     if (result == STATUS_OK)
-        result = store_read(sim, velocity, 0, 24 * n, v, why);
+        result = store_get_grains(sim, velocity, sim->stride, &v[0][0], why);
     if (result == STATUS_OK) {
         set_movers(sim, id, (const double(*)[3])x, v);
         result = store_write(sim, mover->mem, 0, 4 * n, id, why);
     }
     if (result == STATUS_OK)
-        result = store_write(sim, velocity, 0, 24 * n, v, why);
+        result = store_put_grains(sim, velocity, sim->stride, &v[0][0], why);
     free(id);
     free(x);
     free(v);
@@ -428,12 +468,12 @@ static status forget_histories(simulation *sim, failure *why)
 
 static status upload_constants(simulation *sim, int stage, failure *why)
 {
-    size_t size = sizeof(double) * (size_t)(live_constant_count(&sim->live) * live_class_count(&sim->live, sim->scene));
-    double *constants = malloc(size);
+    int64_t count = (int64_t)live_constant_count(&sim->live) * live_class_count(&sim->live, sim->scene);
+    double *constants = malloc(sizeof *constants * (size_t)count);
     if (!constants)
         return fail(why, STATUS_ERROR, "out of memory");
     live_class_constants(&sim->live, sim->scene, stage, constants);
-    status result = store_write(sim, sim->constants, 0, size, constants, why);
+    status result = store_put(sim, sim->constants, FIELD_REAL, 0, count, constants, why);
     free(constants);
     return result;
 }
@@ -497,7 +537,7 @@ void simulation_set_step(simulation *sim, double dt)
 {
     sim->segment_time = sim->time;
     sim->segment_step = sim->step;
-    sim->dt = dt;
+    sim->dt = sim->mixed ? (double)(float)dt : dt; /* time and motion agree on it */
 }
 
 
@@ -512,7 +552,7 @@ status simulation_count_leavers(simulation *sim, int64_t kept, failure *why)
     if (result == STATUS_OK)
         result = store_read(sim, sim->table.work[2], 4 * (uint64_t)kept, 4 * (uint64_t)gone, order, why);
     if (result == STATUS_OK)
-        result = store_read(sim, store_find(sim, "mass")->mem, 0, 8 * (uint64_t)sim->stride, mass, why);
+        result = store_get_grains(sim, store_find(sim, "mass"), sim->stride, mass, why);
     for (int64_t k = 0; k < gone && result == STATUS_OK; k++)
         sim->left_mass += mass[order[k]];
     if (result == STATUS_OK)
@@ -583,8 +623,8 @@ static status enqueue_batch(simulation *sim, int steps, failure *why)
         launch.heat_row = sim->heat.vary ? s : 0;
         for (int c = 0; c < 3; c++)
             launch.drift[c] = sim->drift_velocity[c] * since;
-        TRY_CL(clSetKernelArg(pair, 0, sizeof launch, &launch), "pair_stage");
-        TRY_CL(clSetKernelArg(particle, 0, sizeof launch, &launch), "particle_stage");
+        TRY(launch_pass(pair, "pair_stage", &launch, why));
+        TRY(launch_pass(particle, "particle_stage", &launch, why));
         TRY(launch_run(sim, pair, "pair_stage", sim->table.record_count, CLAST_BLOCK, why));
         TRY(launch_run(sim, particle, "particle_stage", sim->count, CLAST_BLOCK, why));
     }

@@ -74,6 +74,8 @@ typedef struct heat_tables {
 typedef struct simulation {
     const scene *scene;
     device *device;
+    bool mixed;             /* precision of the device's numbers; the host's are double */
+    double origin[3];       /* of the device's positions; 0 in double precision */
     char *kernels_directory;
     live_laws live, all; /* of the stage, and the union over stages */
     int stage;
@@ -147,6 +149,14 @@ status store_buffer(simulation *sim, cl_mem *mem, uint64_t bytes, const char *wh
 void store_release(simulation *sim, cl_mem *mem, uint64_t bytes);
 status store_fields(simulation *sim, failure *why);
 stored_field *store_find(simulation *sim, const char *name);
+/* Bytes of a number of the type on the device. */
+uint64_t store_item(const simulation *sim, field_type type);
+/* Numbers first.. of an array between the host's doubles and the precision of the device. */
+status store_put(simulation *sim, cl_mem mem, field_type type, int64_t first, int64_t count, const double *values, failure *why);
+status store_get(simulation *sim, cl_mem mem, field_type type, int64_t first, int64_t count, double *values, failure *why);
+/* The same for a field of the first `count` grains, components side by side; positions are the scene's. */
+status store_put_grains(simulation *sim, const stored_field *stored, int64_t count, const double *values, failure *why);
+status store_get_grains(simulation *sim, const stored_field *stored, int64_t count, double *values, failure *why);
 uint64_t field_bytes(const simulation *sim, const field *field);
 status store_write(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, const void *data, failure *why);
 status store_read(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, void *data, failure *why);
@@ -166,8 +176,11 @@ status launch_bind(simulation *sim, const char *kernel, int first, failure *why)
 status launch_bind_stages(simulation *sim, failure *why);
 cl_kernel launch_kernel(simulation *sim, const char *name);
 clast_launch launch_values(const simulation *sim);
+/* Sets argument 0, in the precision that the values name. */
+status launch_pass(cl_kernel kernel, const char *name, const clast_launch *launch, failure *why);
 status launch_run(simulation *sim, cl_kernel kernel, const char *name, int64_t items, int64_t group, failure *why);
-/* Sets arguments first.. in order: 'm' cl_mem, 'i' int, 'l' clast_i64, 'd' double, 'L' const clast_launch *. */
+/* Sets arguments first.. in order: 'm' cl_mem, 'i' int, 'l' clast_i64, 'f' double as float,
+ * 'd' double, 'L' const clast_launch *. */
 status launch_set(cl_kernel kernel, const char *name, failure *why, const char *types, ...);
 
 /* table.c */

@@ -15,19 +15,46 @@ static status read_column(simulation *sim, cl_mem mem, int64_t first, int64_t co
     return store_read(sim, mem, (uint64_t)size * (uint64_t)first, (uint64_t)size * (uint64_t)count, *out, why);
 }
 
+/* An array on the device in mixed precision as doubles: `part` 0 the floats there or the high ones of pairs, 1 the low ones. */
+static double float_at(const char *array, bool pairs, int part, int64_t at)
+{
+    float value;
+    memcpy(&value, array + 4 * (pairs ? 2 * at + part : at), sizeof value);
+    return value;
+}
+
+/* In mixed precision pairs make two entries, high and low parts, since a double does not always hold both. */
 static status save_field(simulation *sim, const stored_field *stored, const int32_t *id, bundle *out, failure *why)
 {
     const field *field = stored->field;
-    char name[64];
-    snprintf(name, sizeof name, "particles/%s", field->name);
-    bool real = field->type == FIELD_REAL;
-    size_t size = (real ? sizeof(double) : sizeof(int32_t)) * (size_t)field->components;
-    char *to = bundle_add(out, name, real ? BUNDLE_F64 : BUNDLE_I32, sim->id_count, field->components, NULL), *rows = NULL;
-    status result = read_column(sim, stored->mem, 0, sim->stride, (int)size, (void **)&rows, why);
-    for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++)
-        memcpy(to + size * (size_t)id[i], rows + size * (size_t)i, size);
+    bool numbers = field->type != FIELD_INT, pairs = sim->mixed && field->type == FIELD_EXACT;
+    int c = field->components;
+    char *rows = NULL;
+    status result = read_column(sim, stored->mem, 0, sim->stride, (int)store_item(sim, field->type) * c, (void **)&rows, why);
+    for (int part = 0; part < 1 + pairs && result == STATUS_OK; part++) {
+        char name[64];
+        snprintf(name, sizeof name, "particles/%s%s", field->name, part ? "_low" : "");
+        char *to = bundle_add(out, name, numbers ? BUNDLE_F64 : BUNDLE_I32, sim->id_count, c, NULL);
+        size_t size = (numbers ? sizeof(double) : sizeof(int32_t)) * (size_t)c;
+        for (int64_t i = 0; i < sim->count; i++) {
+            double *row = (double *)(to + size * (size_t)id[i]);
+            if (numbers && sim->mixed)
+                for (int k = 0; k < c; k++)
+                    row[k] = float_at(rows, pairs, part, i * c + k);
+            else
+                memcpy(row, rows + size * (size_t)i, size);
+        }
+    }
     free(rows);
     return result;
+}
+
+static status read_numbers(simulation *sim, cl_mem mem, int64_t first, int64_t count, double **out, failure *why)
+{
+    *out = malloc(sizeof **out * (size_t)(count + 1));
+    if (!*out)
+        return fail(why, STATUS_ERROR, "out of memory");
+    return store_get(sim, mem, FIELD_REAL, first, count, *out, why);
 }
 
 /* Records with any history: ids of the owner and the other (or face, as -1 - face), and all components side by side. */
@@ -42,7 +69,7 @@ static status save_histories(simulation *sim, const int32_t *id, bundle *out, fa
         result = read_column(sim, t->other[t->now], 0, t->record_count, 4, (void **)&other, why);
     for (int f = 0; f < sim->field_count && result == STATUS_OK; f++)
         for (int c = 0; sim->field[f].field->role == FIELD_HISTORY && c < sim->field[f].field->components && result == STATUS_OK; c++)
-            result = read_column(sim, sim->field[f].mem, c * t->record_stride, t->record_count, 8, (void **)&column[columns++], why);
+            result = read_numbers(sim, sim->field[f].mem, c * t->record_stride, t->record_count, &column[columns++], why);
     int64_t live = 0;
     for (int pass = 0; pass < 2 && result == STATUS_OK; pass++) {
         int32_t *pair = pass ? bundle_add(out, "contacts/pair", BUNDLE_I32, live, 2, NULL) : NULL;
@@ -102,6 +129,8 @@ status state_save(simulation *sim, bundle *out, failure *why)
     TRY(bonds_count(sim, &bonds, why));
     bundle_add_i64(out, "run/bonds_made", bonds.made);
     bundle_add_i64(out, "run/bonding_done", sim->bonding_done);
+    bundle_add_i64(out, "run/mixed", sim->mixed);
+    bundle_add(out, "run/origin", BUNDLE_F64, 3, 1, sim->origin);
     save_bodies(sim->wall_body, sim->scene->wall_count, "bodies/walls", out);
     save_bodies(sim->group_body, sim->scene->group_count, "bodies/groups", out);
     int32_t *held = bundle_add(out, "bodies/held", BUNDLE_I32, sim->scene->group_count, 1, NULL);
@@ -135,23 +164,40 @@ static status load_number(const bundle *in, const char *path, const char *name, 
     return STATUS_OK;
 }
 
+static void put_floats(char *to, const bundle_entry *const *entry, bool pairs, int64_t first, int count)
+{
+    for (int64_t n = first; n < first + count; n++)
+        for (int part = 0; part < 1 + pairs; part++, to += sizeof(float)) {
+            float value = (float)((const double *)entry[part]->data)[n];
+            memcpy(to, &value, sizeof value);
+        }
+}
+
 /* Grains that are present come first, in the order of their ids. */
 static status load_field(simulation *sim, const stored_field *stored, const bundle *in, const char *path, const int32_t *present, failure *why)
 {
     const field *field = stored->field;
-    const bundle_entry *entry;
-    char name[64];
-    bool real = field->type == FIELD_REAL;
-    snprintf(name, sizeof name, "particles/%s", field->name);
-    TRY(bundle_get(in, path, name, real ? BUNDLE_F64 : BUNDLE_I32, sim->id_count, field->components, &entry, why));
-    size_t size = (real ? sizeof(double) : sizeof(int32_t)) * (size_t)field->components;
-    char *rows = malloc(size * (size_t)sim->count + 1);
+    const bundle_entry *entry[2] = {NULL, NULL};
+    bool numbers = field->type != FIELD_INT, pairs = sim->mixed && field->type == FIELD_EXACT;
+    int c = field->components;
+    for (int part = 0; part < 1 + pairs; part++) {
+        char name[64];
+        snprintf(name, sizeof name, "particles/%s%s", field->name, part ? "_low" : "");
+        TRY(bundle_get(in, path, name, numbers ? BUNDLE_F64 : BUNDLE_I32, sim->id_count, c, &entry[part], why));
+    }
+    size_t size = (size_t)store_item(sim, field->type) * (size_t)c;
+    char *rows = malloc(size * (size_t)sim->count + 1), *to = rows;
     if (!rows)
         return fail(why, STATUS_ERROR, "out of memory");
-    size_t to = 0;
-    for (int64_t n = 0; n < sim->id_count; n++)
-        if (present[n])
-            memcpy(rows + size * to++, (const char *)entry->data + size * (size_t)n, size);
+    for (int64_t n = 0; n < sim->id_count; n++) {
+        if (!present[n])
+            continue;
+        if (numbers && sim->mixed)
+            put_floats(to, entry, pairs, n * c, c);
+        else
+            memcpy(to, (const char *)entry[0]->data + size * (size_t)n, size);
+        to += size;
+    }
     status result = store_write(sim, stored->mem, 0, size * (uint64_t)sim->count, rows, why);
     free(rows);
     return result;
@@ -219,7 +265,7 @@ static status write_histories(simulation *sim, const saved_contact *saved, int64
         for (int c = 0; sim->field[f].field->role == FIELD_HISTORY && c < sim->field[f].field->components && result == STATUS_OK; c++, at++) {
             for (int64_t k = 0; k < t->record_count; k++)
                 column[k] = row[k] < 0 ? 0.0 : history[row[k] * columns + at];
-            result = store_write(sim, sim->field[f].mem, 8 * (uint64_t)(c * t->record_stride), 8 * (uint64_t)t->record_count, column, why);
+            result = store_put(sim, sim->field[f].mem, FIELD_REAL, c * t->record_stride, t->record_count, column, why);
         }
     free(owner);
     free(other);
@@ -251,6 +297,8 @@ static status load_histories(simulation *sim, const bundle *in, const char *path
 
 static status load_run(simulation *sim, const bundle *in, const char *path, int64_t *stage, failure *why)
 {
+    const bundle_entry *origin;
+    int64_t mixed;
     TRY(load_number(in, path, "run/step", BUNDLE_I64, NULL, &sim->step, why));
     TRY(load_number(in, path, "run/stage", BUNDLE_I64, NULL, stage, why));
     TRY(load_number(in, path, "run/stage_steps", BUNDLE_I64, NULL, &sim->stage_steps, why));
@@ -271,6 +319,12 @@ static status load_run(simulation *sim, const bundle *in, const char *path, int6
     TRY(load_number(in, path, "run/bonds_made", BUNDLE_I64, NULL, &sim->bonds_gone, why));
     TRY(load_number(in, path, "run/bonding_done", BUNDLE_I64, NULL, &done, why));
     sim->bonding_done = done != 0;
+    TRY(load_number(in, path, "run/mixed", BUNDLE_I64, NULL, &mixed, why));
+    if ((mixed != 0) != sim->mixed)
+        return fail(why, STATUS_BAD_INPUT, "%s: the checkpoint is of a run in %s precision, this one is in %s; a run goes on in the precision it began in",
+                    path, mixed ? "mixed" : "double", sim->mixed ? "mixed" : "double");
+    TRY(bundle_get(in, path, "run/origin", BUNDLE_F64, 3, 1, &origin, why));
+    memcpy(sim->origin, origin->data, sizeof sim->origin);
     if (*stage < 0 || *stage >= sim->scene->stage_count)
         return fail(why, STATUS_BAD_INPUT, "%s: run/stage is %lld, the scene has %d stages; the checkpoint is of another scene", path, (long long)*stage,
                     sim->scene->stage_count);

@@ -1,13 +1,14 @@
 /* Arrays on the device: allocation held against its limits, copies, and fields by name. */
 #include "laws/fields.h"
+#include "precision.h"
 #include "simulation.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-const field field_position = {"position", PER_PARTICLE, FIELD_REAL, 3, FIELD_STATE, "m", "position of the centre"};
-const field field_velocity = {"velocity", PER_PARTICLE, FIELD_REAL, 3, FIELD_STATE, "m/s", "velocity"};
-const field field_radius = {"radius", PER_PARTICLE, FIELD_REAL, 1, FIELD_STATE, "m", "radius"};
+const field field_position = {"position", PER_PARTICLE, FIELD_EXACT, 3, FIELD_STATE, "m", "position of the centre"};
+const field field_velocity = {"velocity", PER_PARTICLE, FIELD_EXACT, 3, FIELD_STATE, "m/s", "velocity"};
+const field field_radius = {"radius", PER_PARTICLE, FIELD_EXACT, 1, FIELD_STATE, "m", "radius"};
 const field field_mass = {"mass", PER_PARTICLE, FIELD_REAL, 1, FIELD_STATE, "kg", "mass"};
 const field field_id = {"id", PER_PARTICLE, FIELD_INT, 1, FIELD_STATE, "", "permanent id"};
 const field field_force = {"force", PER_RECORD, FIELD_REAL, 3, FIELD_RESULT, "N", "force of a contact on its owner"};
@@ -42,9 +43,14 @@ void store_release(simulation *sim, cl_mem *mem, uint64_t bytes)
     *mem = NULL;
 }
 
+uint64_t store_item(const simulation *sim, field_type type)
+{
+    return type == FIELD_INT || (type == FIELD_REAL && sim->mixed) ? 4 : 8;
+}
+
 uint64_t field_bytes(const simulation *sim, const field *field)
 {
-    uint64_t item = field->type == FIELD_REAL ? sizeof(double) : sizeof(int32_t);
+    uint64_t item = store_item(sim, field->type);
     uint64_t stride = (uint64_t)(field->extent == PER_RECORD ? sim->table.record_stride : sim->stride);
     return item * stride * (uint64_t)field->components;
 }
@@ -93,6 +99,60 @@ status store_read(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, 
 {
     if (bytes > 0)
         TRY_CL(clEnqueueReadBuffer(sim->device->queue, mem, CL_TRUE, offset, bytes, data, 0, NULL, NULL), "reading from the device");
+    return STATUS_OK;
+}
+
+status store_put(simulation *sim, cl_mem mem, field_type type, int64_t first, int64_t count, const double *values, failure *why)
+{
+    uint64_t item = store_item(sim, type), offset = item * (uint64_t)first, bytes = item * (uint64_t)count;
+    if (!sim->mixed)
+        return store_write(sim, mem, offset, bytes, values, why);
+    void *copy = malloc(bytes + 1);
+    if (!copy)
+        return fail(why, STATUS_ERROR, "out of memory");
+    if (type == FIELD_EXACT)
+        precision_split(memcpy(copy, values, bytes), count);
+    for (int64_t n = 0; type == FIELD_REAL && n < count; n++)
+        ((float *)copy)[n] = (float)values[n];
+    status result = store_write(sim, mem, offset, bytes, copy, why);
+    free(copy);
+    return result;
+}
+
+status store_get(simulation *sim, cl_mem mem, field_type type, int64_t first, int64_t count, double *values, failure *why)
+{
+    uint64_t item = store_item(sim, type), offset = item * (uint64_t)first, bytes = item * (uint64_t)count;
+    TRY(store_read(sim, mem, offset, bytes, values, why));
+    if (sim->mixed && type == FIELD_EXACT)
+        precision_join(values, count);
+    for (int64_t n = count; sim->mixed && type == FIELD_REAL && n-- > 0;) { /* from the end, in place */
+        float narrow;
+        memcpy(&narrow, (const char *)values + 4 * n, sizeof narrow);
+        values[n] = narrow;
+    }
+    return STATUS_OK;
+}
+
+status store_put_grains(simulation *sim, const stored_field *stored, int64_t count, const double *values, failure *why)
+{
+    int components = stored->field->components;
+    if (!sim->mixed || stored->field != &field_position)
+        return store_put(sim, stored->mem, stored->field->type, 0, count * components, values, why);
+    double *moved = malloc(sizeof *moved * (size_t)(3 * count + 1));
+    if (!moved)
+        return fail(why, STATUS_ERROR, "out of memory");
+    for (int64_t n = 0; n < 3 * count; n++)
+        moved[n] = values[n] - sim->origin[n % 3];
+    status result = store_put(sim, stored->mem, FIELD_EXACT, 0, 3 * count, moved, why);
+    free(moved);
+    return result;
+}
+
+status store_get_grains(simulation *sim, const stored_field *stored, int64_t count, double *values, failure *why)
+{
+    TRY(store_get(sim, stored->mem, stored->field->type, 0, count * stored->field->components, values, why));
+    for (int64_t n = 0; sim->mixed && stored->field == &field_position && n < 3 * count; n++)
+        values[n] += sim->origin[n % 3];
     return STATUS_OK;
 }
 

@@ -1,4 +1,5 @@
 /* The contact table on the device: see kernels/stage/table.cl. The host drives the launches and grows what is too small. */
+#include "precision.h"
 #include "simulation.h"
 
 #include <math.h>
@@ -66,6 +67,8 @@ static void set_level(const simulation *sim, double size, double low[3], double 
 {
     const domain *d = &sim->scene->domain;
     double cells[3], total = 1.0, most = 2.0 * (double)sim->id_count + 64.0;
+    for (int c = 0; c < 3 && sim->mixed; c++) /* floats place a grain into a cell to a share of the cell: what they may miss is added */
+        size = fmax(size, size * (1.0 + 0x1p-20 * (high[c] - low[c]) / size));
     for (int c = 0; c < 3; c++) {
         cells[c] = floor((high[c] - low[c]) / size);
         bool periodic = d->given && d->periodic[c];
@@ -169,13 +172,14 @@ static status sort_grains(simulation *sim, const clast_launch *launch, failure *
 }
 
 /* By way of the positions at the last table, which are written anew in the end; an orientation, of four, by way of twice its room. */
-static status permute_real(simulation *sim, const clast_launch *launch, cl_mem mem, int components, failure *why)
+static status permute_numbers(simulation *sim, const clast_launch *launch, cl_mem mem, field_type type, int components, failure *why)
 {
-    cl_kernel kernel = launch_kernel(sim, "table_permute_real");
+    const char *name = type == FIELD_EXACT ? "table_permute_exact" : "table_permute_real";
+    cl_kernel kernel = launch_kernel(sim, name);
     cl_mem scratch = components > 3 ? sim->scratch4 : sim->built_position;
-    TRY(launch_set(kernel, "table_permute_real", why, "Lmmmi", launch, sim->table.work[WORK_C], mem, scratch, components));
-    TRY(launch_run(sim, kernel, "table_permute_real", sim->count, GROUP, why));
-    return store_copy(sim, scratch, mem, 0, 0, 8 * (uint64_t)(sim->count * components), why);
+    TRY(launch_set(kernel, name, why, "Lmmmi", launch, sim->table.work[WORK_C], mem, scratch, components));
+    TRY(launch_run(sim, kernel, name, sim->count, GROUP, why));
+    return store_copy(sim, scratch, mem, 0, 0, store_item(sim, type) * (uint64_t)(sim->count * components), why);
 }
 
 static status permute_fields(simulation *sim, const clast_launch *launch, failure *why)
@@ -186,8 +190,8 @@ static status permute_fields(simulation *sim, const clast_launch *launch, failur
         cl_mem mem = sim->field[f].mem;
         if (field->extent != PER_PARTICLE || field->role != FIELD_STATE)
             continue;
-        if (field->type == FIELD_REAL) {
-            TRY(permute_real(sim, launch, mem, field->components, why));
+        if (field->type != FIELD_INT) {
+            TRY(permute_numbers(sim, launch, mem, field->type, field->components, why));
             continue;
         }
         TRY(launch_set(kernel, "table_permute_int", why, "Lmmm", launch, sim->table.work[WORK_C], mem, sim->table.work[WORK_B]));
@@ -200,7 +204,8 @@ static status permute_fields(simulation *sim, const clast_launch *launch, failur
 /* Partners a grain that fit into the force array, which nobody reads while a table is built. */
 static int kept_partners(const simulation *sim)
 {
-    int64_t room = 2 * field_force.components * sim->table.record_stride / sim->stride; /* two words a real */
+    int64_t words = (int64_t)store_item(sim, FIELD_REAL) / 4 * field_force.components;
+    int64_t room = words * sim->table.record_stride / sim->stride;
     return room > 32 ? 32 : (int)room;
 }
 
@@ -321,7 +326,7 @@ static status carry_histories(simulation *sim, int64_t old_stride, failure *why)
         const field *field = stored->field;
         if (field->extent != PER_RECORD)
             continue;
-        uint64_t old_bytes = 8 * (uint64_t)(old_stride * field->components);
+        uint64_t old_bytes = store_item(sim, field->type) * (uint64_t)(old_stride * field->components);
         cl_mem old = stored->mem;
         if (field->role != FIELD_HISTORY) {
             if (grown)
@@ -391,7 +396,10 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
     TRY(bonds_before(sim, why));
     set_grid(sim, drop_outside);
     TRY(fit_cells(sim, why));
-    TRY(store_write(sim, t->grid, 0, sizeof t->grid_host, &t->grid_host, why));
+    clast_grid grid = t->grid_host;
+    if (sim->mixed)
+        precision_split_grid(&grid, sim->origin);
+    TRY(store_write(sim, t->grid, 0, sizeof grid, &grid, why));
     clast_launch launch = launch_values(sim);
     TRY(sort_grains(sim, &launch, why));
     launch.particle_count = (clast_i32)sim->count;
@@ -428,7 +436,7 @@ status table_travel(simulation *sim, double *out, failure *why)
     if (result == STATUS_OK)
         result = launch_run(sim, kernel, "table_travel", chunks, 1, why);
     if (result == STATUS_OK)
-        result = store_read(sim, sim->partial, 0, 8 * (uint64_t)chunks, most, why);
+        result = store_get(sim, sim->partial, FIELD_EXACT, 0, chunks, most, why);
     for (int64_t c = 0; c < chunks && result == STATUS_OK; c++)
         *out = fmax(*out, most[c]);
     free(most);

@@ -1,8 +1,7 @@
-/* Scalars and vectors. A struct of three scalars vectorises where float3/double3 do not; functions are inlined always, since one call
+/* Scalars and vectors; what is `precise` and `exact` is defined in precision/. A struct of three scalars vectorises where float3/double3 do not; functions are inlined always, since one call
  * ends vectorisation. */
 #ifndef REAL_IS_FLOAT
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
-typedef double real;
+typedef clast_f64 real;
 #define R(x) ((real)(x))
 #else
 typedef float real;
@@ -66,26 +65,21 @@ INLINE vec3 turn_by(vec3 v, vec3 w)
     return add_scaled(v, weight, cross3(h, add(v, cross3(h, v))));
 }
 
-/* Small increments add up over many steps: every running sum goes through here. */
-INLINE vec3 accumulate3(vec3 sum, vec3 increment)
-{
-    return add(sum, increment);
-}
-
-INLINE vec3 from3(const clast_f64 *a)
-{
-    return v3((real)a[0], (real)a[1], (real)a[2]);
-}
+/* Three exact numbers in a row, as reals and with all their bits; a macro, since they may stand in private or in global memory. */
+#define from3(a) v3(number((a)[0]), number((a)[1]), number((a)[2]))
+#define PRECISE3(a) precise3_of(precise_load((a)[0]), precise_load((a)[1]), precise_load((a)[2]))
 
 /* Fields of grains keep the components of one grain together: a pair reads a grain that stands anywhere, and finds it in one or two cache
- * lines (docs/performance.md). */
-#define GRAIN3(field, i) v3((field)[3 * (size_t)(i)], (field)[3 * (size_t)(i) + 1], (field)[3 * (size_t)(i) + 2])
-#define SET_GRAIN3(field, i, v)               \
-    do {                                      \
-        (field)[3 * (size_t)(i)] = (v).x;     \
-        (field)[3 * (size_t)(i) + 1] = (v).y; \
-        (field)[3 * (size_t)(i) + 2] = (v).z; \
+ * lines (docs/performance.md). They are exact, and read as reals or with all their bits. */
+#define GRAIN3(field, i) from3((field) + 3 * (size_t)(i))
+#define PRECISE_GRAIN3(field, i) PRECISE3((field) + 3 * (size_t)(i))
+#define SET_GRAIN3(field, i, v)                              \
+    do {                                                     \
+        (field)[3 * (size_t)(i)] = precise_store((v).x);     \
+        (field)[3 * (size_t)(i) + 1] = precise_store((v).y); \
+        (field)[3 * (size_t)(i) + 2] = precise_store((v).z); \
     } while (0)
+#define GRAIN_RADIUS(i) number(radius[i])
 /* Fields of records are read one record after the other, a component each: component c of a field of `stride` elements a component. */
 #define AT(field, stride, c, k) (field)[(size_t)(c) * (size_t)(stride) + (size_t)(k)]
 #define LOAD3(field, stride, k) v3(AT(field, stride, 0, k), AT(field, stride, 1, k), AT(field, stride, 2, k))

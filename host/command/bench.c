@@ -1,11 +1,12 @@
 /* clast bench */
 #include "../bench.h"
 #include "../parameter.h"
+#include "../scene.h"
 #include "command.h"
 
 #include <string.h>
 
-enum { KEY_ROLLING = 256, KEY_EXPORT, KEY_JSON };
+enum { KEY_PRECISION = 256, KEY_ROLLING, KEY_EXPORT, KEY_JSON };
 
 typedef struct bench_input {
     const char *what;
@@ -29,6 +30,7 @@ static void check_what(const struct argp_state *state, const char *what)
 static error_t parse_bench(int key, char *argument, struct argp_state *state)
 {
     bench_input *input = state->input;
+    precision found;
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &input->device;
@@ -38,6 +40,11 @@ static error_t parse_bench(int key, char *argument, struct argp_state *state)
         return 0;
     case 'S':
         input->options.steps = option_count(state, "--steps", argument, 1, 1000000000000);
+        return 0;
+    case KEY_PRECISION:
+        if (!precision_find(argument, &found))
+            option_refuse(state, "--precision: `%s` is none of auto, double, mixed", argument);
+        input->options.mixed = found == PRECISION_MIXED;
         return 0;
     case KEY_ROLLING:
         input->options.rolling = true;
@@ -62,6 +69,7 @@ static error_t parse_bench(int key, char *argument, struct argp_state *state)
 static const struct argp_option bench_option[] = {
     {"particles", 'n', "N", 0, "Number of particles, as in 1e5 (100000)", 0},
     {"steps", 'S', "STEPS", 0, "Steps that are timed, after 200 of warm-up", 0},
+    {"precision", KEY_PRECISION, "P", 0, "auto, double or mixed", 0},
     {"rolling", KEY_ROLLING, NULL, 0, "With rolling resistance", 0},
     {"export", KEY_EXPORT, "FILE.csv", 0, "Write the bed as it is before the warm-up", 0},
     {"json", KEY_JSON, "FILE.json", 0, "Write the figures as JSON", 0},

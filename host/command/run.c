@@ -1,5 +1,6 @@
 /* clast run, clast resume */
 #include "../run.h"
+#include "../scene.h"
 #include "command.h"
 
 #include <string.h>
@@ -14,10 +15,9 @@ typedef struct run_input {
 
 static void check_precision(const struct argp_state *state, const char *precision)
 {
-    if (strcmp(precision, "mixed") == 0)
-        option_refuse(state, "--precision mixed is not in this version; use double");
-    if (strcmp(precision, "double") != 0 && strcmp(precision, "auto") != 0)
-        option_refuse(state, "--precision: `%s` is none of auto, double", precision);
+    enum precision found;
+    if (!precision_find(precision, &found))
+        option_refuse(state, "--precision: `%s` is none of auto, double, mixed", precision);
 }
 
 static error_t parse_run(int key, char *argument, struct argp_state *state)
@@ -81,7 +81,7 @@ static error_t parse_resume(int key, char *argument, struct argp_state *state)
 
 static const struct argp_option run_option[] = {
     {"out", 'o', "RESULT.h5", 0, "Results file; an XDMF file and the checkpoint get the same stem", 0},
-    {"precision", KEY_PRECISION, "P", 0, "auto or double, instead of the scene's", 0},
+    {"precision", KEY_PRECISION, "P", 0, "auto, double or mixed, instead of the scene's", 0},
     {"sweep", KEY_SWEEP, "PATH=A,B,C", 0, "Run once for each value (not in this version)", 0},
     {"quiet", 'q', NULL, 0, "Show no progress", 0},
     {0},

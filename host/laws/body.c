@@ -6,7 +6,7 @@
 static void coefficient_constant(const double *option, char *text, size_t size)
 {
     size_t used = strlen(text);
-    snprintf(text + used, size - used, "#define BODY_DAMPING R(%.17g)\n", option[0]);
+    snprintf(text + used, size - used, "#define BODY_DAMPING R(%.17e)\n", option[0]);
 }
 
 const law law_local_damping = {

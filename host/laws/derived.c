@@ -2,6 +2,26 @@
 #include "fields.h"
 #include "laws.h"
 
+#include <stdio.h>
+#include <string.h>
+
+/* Appends. */
+static void mixed_constants(const double *option, char *text, size_t size)
+{
+    (void)option;
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "#define REAL_IS_FLOAT\n");
+}
+
+const law law_precision_mixed = {
+    .name = "mixed",
+    .slot = SLOT_PRECISION,
+    .doc = "Arithmetic in float; what takes small increments over many steps, and what overlaps are differences of, in pairs of floats.",
+    .source = "Knuth, TAOCP 2, sec. 4.2.2; Dekker 1971",
+    .kernel_file = "precision/mixed.cl",
+    .constants = mixed_constants,
+};
+
 const law law_composition_several = {
     .name = "several",
     .slot = SLOT_COMPOSITION,

@@ -19,9 +19,9 @@ const law law_dissipation_tracked = {
 
 static const field field_record_energy = {"record_energy", PER_RECORD, FIELD_REAL, 5, FIELD_RESULT, "J",
                                           "of this step: dissipated normal, tangential, rolling; work of the wall, of changing stiffness"};
-const field field_dissipated = {"dissipated", PER_PARTICLE, FIELD_REAL, 3, FIELD_STATE, "J", "dissipated normal, tangential, rolling"};
-const field field_work_contacts = {"work_contacts", PER_PARTICLE, FIELD_REAL, 3, FIELD_STATE, "J", "work of walls, changing stiffness, expansion"};
-const field field_work_grains = {"work_grains", PER_PARTICLE, FIELD_REAL, 3, FIELD_STATE, "J",
+const field field_dissipated = {"dissipated", PER_PARTICLE, FIELD_EXACT, 3, FIELD_STATE, "J", "dissipated normal, tangential, rolling"};
+const field field_work_contacts = {"work_contacts", PER_PARTICLE, FIELD_EXACT, 3, FIELD_STATE, "J", "work of walls, changing stiffness, expansion"};
+const field field_work_grains = {"work_grains", PER_PARTICLE, FIELD_EXACT, 3, FIELD_STATE, "J",
                                  "work of gravity; dissipated by background damping; work of prescribed motion"};
 
 const law law_ledger_energies = {

@@ -2,8 +2,17 @@
 #ifndef CLAST_SHARED_H
 #define CLAST_SHARED_H
 
-#ifdef __OPENCL_VERSION__
+#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
+#ifdef REAL_IS_FLOAT
+/* In mixed precision a number of 64 bits is two floats: the number rounded, and what that leaves (kernels/precision/mixed.cl). The host turns
+ * its doubles into such pairs before they leave it. A struct, so that nobody takes the bits for a number. */
+typedef struct clast_f64 {
+    ulong bits;
+} clast_f64;
+#else
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
 typedef double clast_f64;
+#endif
 typedef long clast_i64;
 typedef int clast_i32;
 #else
@@ -37,7 +46,7 @@ typedef struct clast_launch {
     clast_i32 mover_count;
     clast_i32 heat_row;         /* row of the tables of heat for this step */
     clast_i32 bonding;          /* 1 in the step in which contacts bond at a given time */
-    clast_i32 spare;
+    clast_i32 mixed;            /* for the host: the numbers are to be passed as pairs of floats */
 } clast_launch;
 
 /* Written by stages that find something; the host reads it once a batch. */

@@ -6,10 +6,10 @@
 INLINE int environment_find(__global const clast_profile *p, real x, real *share)
 {
     int k = 0, last = p->count - 1;
-    while (k + 1 < last && x > (real)p->at[k + 1])
+    while (k + 1 < last && x > number(p->at[k + 1]))
         k++;
     int next = last > k ? k + 1 : k;
-    real from = (real)p->at[k], length = (real)p->at[next] - from;
+    real from = number(p->at[k]), length = number(p->at[next]) - from;
     real s = length > R(0.0) ? (x - from) / length : R(0.0);
     *share = s < R(0.0) ? R(0.0) : (s > R(1.0) ? R(1.0) : s);
     return k;
@@ -17,7 +17,7 @@ INLINE int environment_find(__global const clast_profile *p, real x, real *share
 
 INLINE real environment_blend(__global const clast_f64 *value, int k, int last, real share)
 {
-    real from = (real)value[k], to = (real)value[k < last ? k + 1 : k];
+    real from = number(value[k]), to = number(value[k < last ? k + 1 : k]);
     return from + share * (to - from);
 }
 
@@ -30,8 +30,8 @@ INLINE real environment_component(vec3 x, int axis)
 INLINE void environment_at(__global const clast_environment *row, __global const clast_profile *profile, grain *g)
 {
     real share;
-    g->surroundings = (real)row->temperature;
-    g->gas = v3((real)row->gas_velocity[0], (real)row->gas_velocity[1], (real)row->gas_velocity[2]);
+    g->surroundings = number(row->temperature);
+    g->gas = from3(row->gas_velocity);
     if (profile[0].count > 0) {
         int k = environment_find(profile, environment_component(g->position, profile[0].axis), &share);
         g->surroundings = environment_blend(profile[0].value[0], k, profile[0].count - 1, share);

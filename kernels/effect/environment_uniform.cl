@@ -4,6 +4,6 @@
 
 INLINE void environment_at(__global const clast_environment *row, grain *g)
 {
-    g->surroundings = (real)row->temperature;
-    g->gas = v3((real)row->gas_velocity[0], (real)row->gas_velocity[1], (real)row->gas_velocity[2]);
+    g->surroundings = number(row->temperature);
+    g->gas = from3(row->gas_velocity);
 }

@@ -13,12 +13,12 @@
 /* The velocities that the laws see are half a step older than the forces (docs/theory.md, "The energy ledger"). */
 #define INTEGRATOR_LAG R(0.5)
 
-INLINE vec3 integrate_velocity(vec3 velocity, vec3 acceleration, real dt)
+INLINE precise3 integrate_velocity(precise3 velocity, vec3 acceleration, real dt)
 {
-    return add_scaled(velocity, dt, acceleration);
+    return precise3_add_scaled(velocity, dt, precise3_from(acceleration));
 }
 
-INLINE vec3 integrate_position(vec3 position, vec3 velocity, real dt)
+INLINE precise3 integrate_position(precise3 position, precise3 velocity, real dt)
 {
-    return add_scaled(position, dt, velocity);
+    return precise3_add_scaled(position, dt, velocity);
 }

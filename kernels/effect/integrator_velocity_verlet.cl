@@ -3,19 +3,19 @@
  * Behind this file comes one of integrator_half_spin.cl and integrator_no_spin.cl. Reads and writes half_velocity. */
 #define INTEGRATOR_PAST_VELOCITY(i, v) GRAIN3(half_velocity, i)
 #define INTEGRATOR_ELAPSED(launch) (launch)->lag
-#define INTEGRATOR_VELOCITY(i, v) GRAIN3(half_velocity, i)
+#define INTEGRATOR_VELOCITY(i, v) PRECISE_GRAIN3(half_velocity, i)
 #define INTEGRATOR_KEEP_VELOCITY(i, v) SET_GRAIN3(half_velocity, i, v)
 #define INTEGRATOR_AHEAD(kept, ahead) (ahead)
 #define INTEGRATOR_LAG R(0.0)
 /* The extrapolation makes a damper count twice towards the limit of the step (docs/theory.md). */
 #define INTEGRATOR_DAMPING_LAG R(2.0)
 
-INLINE vec3 integrate_velocity(vec3 velocity, vec3 acceleration, real dt)
+INLINE precise3 integrate_velocity(precise3 velocity, vec3 acceleration, real dt)
 {
-    return add_scaled(velocity, dt, acceleration);
+    return precise3_add_scaled(velocity, dt, precise3_from(acceleration));
 }
 
-INLINE vec3 integrate_position(vec3 position, vec3 velocity, real dt)
+INLINE precise3 integrate_position(precise3 position, precise3 velocity, real dt)
 {
-    return add_scaled(position, dt, velocity);
+    return precise3_add_scaled(position, dt, velocity);
 }

@@ -2,7 +2,7 @@
  * up those of the records that it owns, in slot order, and what acts on the grain alone (docs/theory.md, "The energy ledger"). */
 #define LEDGER_PAIR_FIELDS(READ, WRITE) WRITE(real, record_energy)
 #define LEDGER_PARTICLE_FIELDS(READ, WRITE) \
-    READ(real, record_energy) WRITE(real, dissipated) WRITE(real, work_contacts) WRITE(real, work_grains)
+    READ(real, record_energy) WRITE(exact, dissipated) WRITE(exact, work_contacts) WRITE(exact, work_grains)
 #define LEDGER_LOAD(launch, k, s) (s).walls = R(0.0)
 #define LEDGER_STORE(launch, k, s)                                                                \
     do {                                                                                          \
@@ -27,7 +27,7 @@ INLINE void ledger_wall(ledger_state *s, real work)
     s->walls = work;
 }
 
-#define LEDGER_ADD(sum, i, v) SET_GRAIN3(sum, i, accumulate3(GRAIN3(sum, i), v))
+#define LEDGER_ADD(sum, i, v) SET_GRAIN3(sum, i, precise3_add(PRECISE_GRAIN3(sum, i), precise3_from(v)))
 
 /* The records that grain i owns. */
 #define LEDGER_ADVANCE(launch, i, step)                                                                                                   \

@@ -6,7 +6,7 @@
 
 INLINE real motion_mass(int mover, real mass)
 {
-    return mover >= 0 ? R(1e30) : mass;
+    return mover >= 0 ? HEAVY : mass;
 }
 
 /* Two grains that are both moved as prescribed do not act on each other. */
@@ -15,29 +15,30 @@ INLINE real motion_overlap(int mover_i, int mover_j, real overlap)
     return mover_i >= 0 && mover_j >= 0 ? R(0.0) : overlap;
 }
 
-INLINE vec3 motion_position(__global const clast_mover *movers, int mover, vec3 free, vec3 start)
+INLINE precise3 motion_position(__global const clast_mover *movers, int mover, precise3 free, precise3 start)
 {
     if (mover < 0)
         return free;
     clast_mover m = movers[mover];
-    vec3 axis = from3(m.axis), arm = sub(start, from3(m.pivot));
+    vec3 axis = from3(m.axis), arm = rounded3(precise3_sub(start, PRECISE3(m.pivot)));
     vec3 swing = cross3(axis, arm);
-    vec3 turned = add_scaled(scale((real)m.sine, swing), (real)m.versine, cross3(axis, swing));
-    return add(add(start, turned), from3(m.shift));
+    vec3 turned = add_scaled(scale(number(m.sine), swing), number(m.versine), cross3(axis, swing));
+    return precise3_add(precise3_add(start, precise3_from(turned)), PRECISE3(m.shift));
 }
 
-INLINE vec3 motion_velocity(__global const clast_mover *movers, int mover, vec3 free, vec3 x)
+INLINE precise3 motion_velocity(__global const clast_mover *movers, int mover, precise3 free, precise3 x)
 {
     if (mover < 0)
         return free;
     clast_mover m = movers[mover];
-    return add(from3(m.velocity), cross3(from3(m.spin), sub(x, from3(m.pivot_end))));
+    vec3 arm = rounded3(precise3_sub(x, PRECISE3(m.pivot_end)));
+    return precise3_from(add(from3(m.velocity), cross3(from3(m.spin), arm)));
 }
 
-INLINE vec3 motion_spin(__global const clast_mover *movers, int mover, vec3 free)
+INLINE precise3 motion_spin(__global const clast_mover *movers, int mover, precise3 free)
 {
     if (mover < 0)
         return free;
     clast_mover m = movers[mover];
-    return from3(m.spin);
+    return PRECISE3(m.spin);
 }

@@ -1,10 +1,11 @@
 /* rotation: spin and torque, TM Eq. 1 with j = (2/5) m r^2. Reads and writes spin; a record's torque holds that on its owner, then that on
  * the other body. */
-#define ROTATION_PAIR_FIELDS(READ, WRITE) READ(real, spin) WRITE(real, torque)
-#define ROTATION_PARTICLE_FIELDS(READ, WRITE) WRITE(real, spin) READ(real, torque)
-#define ROTATION_OBSERVE_FIELDS(READ, WRITE) READ(real, spin)
+#define ROTATION_PAIR_FIELDS(READ, WRITE) READ(exact, spin) WRITE(real, torque)
+#define ROTATION_PARTICLE_FIELDS(READ, WRITE) WRITE(exact, spin) READ(real, torque)
+#define ROTATION_OBSERVE_FIELDS(READ, WRITE) READ(exact, spin)
 #define ROTATION_LIMIT_FIELDS(READ, WRITE) READ(real, torque)
 #define ROTATION_LOAD(launch, i) GRAIN3(spin, i)
+#define ROTATION_PRECISE(launch, i) PRECISE_GRAIN3(spin, i)
 #define ROTATION_STORE(launch, i, w) SET_GRAIN3(spin, i, w)
 #define ROTATION_STORE_TORQUE(launch, k, owner_torque, other_torque)                   \
     do {                                                                               \
@@ -35,7 +36,7 @@
         r.damping = AT(torque, (launch)->record_stride, 5, k);                \
     } while (0)
 
-INLINE vec3 rotation_advance(vec3 spin, vec3 torque, real inertia, real dt)
+INLINE precise3 rotation_advance(precise3 spin, vec3 torque, real inertia, real dt)
 {
-    return add_scaled(spin, dt / inertia, torque);
+    return precise3_add_scaled(spin, dt / inertia, precise3_from(torque));
 }

@@ -6,10 +6,11 @@
 #ifndef SPECIFIC_HEAT
 #define SPECIFIC_HEAT 0
 #endif
-#define TEMPERATURE_PARTICLE_FIELDS(READ, WRITE) WRITE(real, temperature) READ(real, grain_constants)
-#define TEMPERATURE_OF_GRAIN(i) temperature[i]
+#define TEMPERATURE_PARTICLE_FIELDS(READ, WRITE) WRITE(exact, temperature) READ(real, grain_constants)
+#define TEMPERATURE_OF_GRAIN(i) number(temperature[i])
+#define TEMPERATURE_PRECISE(i) precise_load(temperature[i])
 #define TEMPERATURE_CONSTANTS(row) (grain_constants + (row)*GRAIN_CONSTANTS)
-#define TEMPERATURE_STORE(i, t) temperature[i] = (t)
+#define TEMPERATURE_STORE(i, t) temperature[i] = precise_store(t)
 
 /* J/K */
 INLINE real temperature_capacity(const grain *g)
@@ -18,7 +19,7 @@ INLINE real temperature_capacity(const grain *g)
 }
 
 /* The only place that adds to a temperature. */
-INLINE real temperature_after(real temperature, real rise)
+INLINE precise temperature_after(precise temperature, real rise)
 {
-    return temperature + rise;
+    return precise_add(temperature, precise_from(rise));
 }

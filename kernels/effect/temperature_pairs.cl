@@ -1,3 +1,3 @@
 /* temperature of the bodies of a contact, for the laws that read it. */
-#define TEMPERATURE_PAIR_FIELDS(READ, WRITE) READ(real, temperature)
-#define TEMPERATURE_OF_BODY(i) temperature[i]
+#define TEMPERATURE_PAIR_FIELDS(READ, WRITE) READ(exact, temperature)
+#define TEMPERATURE_OF_BODY(i) number(temperature[i])

@@ -10,11 +10,13 @@
 /* W */
 INLINE real thermal_group_heat(__global const clast_group_heat *row, int group)
 {
-    return group >= 0 ? (real)row[group].heat : R(0.0);
+    return group >= 0 ? number(row[group].heat) : R(0.0);
 }
 
 /* At the end of the step. */
-INLINE real thermal_group_temperature(__global const clast_group_heat *row, int group, real free)
+INLINE precise thermal_group_temperature(__global const clast_group_heat *row, int group, precise free)
 {
-    return group >= 0 && row[group].prescribed ? (real)row[group].temperature : free;
+    if (group >= 0 && row[group].prescribed)
+        return precise_load(row[group].temperature);
+    return free;
 }

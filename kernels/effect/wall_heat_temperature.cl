@@ -7,5 +7,5 @@
 
 INLINE real wall_heat_flow(__global const clast_wall_heat *wall, const contact *c, real conductance)
 {
-    return wall->kind == CLAST_WALL_TEMPERATURE ? conductance * ((real)wall->temperature - c->temperature_i) : R(0.0);
+    return wall->kind == CLAST_WALL_TEMPERATURE ? conductance * (number(wall->temperature) - c->temperature_i) : R(0.0);
 }

@@ -3,36 +3,34 @@
 #define WALLS_CONTACT(launch, face, x, v, c, touch) \
     walls_contact(faces + (launch)->face_row * (launch)->face_count, (launch)->face_count, face, x, v, c, touch)
 
-#define WALLS_VECTOR(a) v3((real)(a)[0], (real)(a)[1], (real)(a)[2])
-
 typedef struct wall_touch {
-    vec3 point;    /* of the wall, nearest to the grain's centre */
-    vec3 velocity; /* of the wall there */
-    vec3 pivot;    /* about which torques on the wall are taken */
-    real distance; /* from the centre; huge where another face has this contact */
+    precise3 point;   /* of the wall, nearest to the grain's centre */
+    vec3 velocity;    /* of the wall there */
+    precise3 pivot;   /* about which torques on the wall are taken */
+    precise distance; /* from the centre; huge where another face has this contact */
     int party;
 } wall_touch;
 
 /* Nearest point of a face with borders. */
 typedef struct wall_nearest {
-    vec3 point, outward; /* outward: unit vector from the point to the centre */
-    real distance;
+    precise3 point;
+    vec3 outward; /* unit vector from the point to the centre */
+    precise distance;
     bool on_face;
 } wall_nearest;
 
 /* n, spin_j and turn of the contact; a face turns with its wall, an edge or a corner with the grain's passage. */
-INLINE void walls_fill(const __global clast_face *face, vec3 n, vec3 point, real distance, bool on_face, vec3 velocity_i, contact *c,
+INLINE void walls_fill(const __global clast_face *face, vec3 n, precise3 point, precise distance, bool on_face, vec3 velocity_i, contact *c,
                        wall_touch *touch)
 {
-    vec3 spin = v3((real)face->spin[0], (real)face->spin[1], (real)face->spin[2]);
-    vec3 pivot = v3((real)face->pivot[0], (real)face->pivot[1], (real)face->pivot[2]);
-    vec3 at_pivot = v3((real)face->velocity[0], (real)face->velocity[1], (real)face->velocity[2]);
+    vec3 spin = from3(face->spin), at_pivot = from3(face->velocity);
+    precise3 pivot = PRECISE3(face->pivot);
     touch->point = point;
     touch->pivot = pivot;
-    touch->velocity = add(at_pivot, cross3(spin, sub(point, pivot)));
+    touch->velocity = add(at_pivot, cross3(spin, rounded3(precise3_sub(point, pivot))));
     touch->distance = distance;
     touch->party = face->party;
-    vec3 passing = scale(R(1.0) / distance, cross3(n, sub(touch->velocity, velocity_i)));
+    vec3 passing = scale(R(1.0) / rounded(distance), cross3(n, sub(touch->velocity, velocity_i)));
     vec3 across = add_scaled(spin, -dot3(spin, n), n);
     c->n = n;
     c->spin_j = spin;

@@ -1,77 +1,84 @@
 /* walls: planes, rectangles and discs. A rectangle or a disc acts from both sides, at its face, its edge and its corners. An edge or a
  * corner counts only where no other face is nearer at that point, and once where several faces share it: the smallest index has it. */
-INLINE real walls_clamp(real x, real limit)
+INLINE precise walls_clamp(precise x, precise limit)
 {
-    return x > limit ? limit : (x < -limit ? -limit : x);
+    if (precise_less(limit, x))
+        return limit;
+    precise low = precise_sub(precise_from(R(0.0)), limit);
+    return precise_less(x, low) ? low : x;
 }
 
 /* Inside the border by more than rounding, so that a grain right over a seam is on the edge of both faces and not on both faces. */
 INLINE bool walls_within(const __global clast_face *face, real u, real v)
 {
-    real a = R(0.999999999) * (real)face->extent[0], b = R(0.999999999) * (real)face->extent[1];
+    real a = (R(1.0) - SEAM) * number(face->extent[0]), b = (R(1.0) - SEAM) * number(face->extent[1]);
     return face->shape == CLAST_FACE_RECTANGLE ? fabs(u) < a && fabs(v) < b : u * u + v * v < a * a;
 }
 
-INLINE wall_nearest walls_find(const __global clast_face *face, vec3 x)
+INLINE wall_nearest walls_find(const __global clast_face *face, precise3 x)
 {
-    vec3 normal = v3((real)face->normal[0], (real)face->normal[1], (real)face->normal[2]);
-    vec3 origin = v3((real)face->origin[0], (real)face->origin[1], (real)face->origin[2]);
-    vec3 from = sub(x, origin);
+    precise3 normal = PRECISE3(face->normal), origin = PRECISE3(face->origin);
+    precise3 from = precise3_sub(x, origin);
     if (walls_is_round(face))
         return walls_find_round(face, origin, normal, from);
-    real height = dot3(from, normal);
+    precise height = precise3_dot(from, normal);
     wall_nearest r;
     if (face->shape == CLAST_FACE_PLANE) {
-        r.point = add_scaled(x, -height, normal);
-        r.outward = normal;
+        r.point = precise3_add_scaled(x, -rounded(height), normal);
+        r.outward = rounded3(normal);
         r.distance = height;
         r.on_face = true;
         return r;
     }
-    vec3 e1 = v3((real)face->e1[0], (real)face->e1[1], (real)face->e1[2]);
-    vec3 e2 = v3((real)face->e2[0], (real)face->e2[1], (real)face->e2[2]);
-    real u = dot3(from, e1), v = dot3(from, e2), uc, vc;
+    precise3 e1 = PRECISE3(face->e1), e2 = PRECISE3(face->e2);
+    precise u = precise3_dot(from, e1), v = precise3_dot(from, e2), uc, vc;
     if (face->shape == CLAST_FACE_RECTANGLE) {
-        uc = walls_clamp(u, (real)face->extent[0]);
-        vc = walls_clamp(v, (real)face->extent[1]);
+        uc = walls_clamp(u, precise_load(face->extent[0]));
+        vc = walls_clamp(v, precise_load(face->extent[1]));
     } else {
-        real rho = sqrt(u * u + v * v), radius = (real)face->extent[0];
-        real shrink = rho > radius ? radius / rho : R(1.0);
-        uc = shrink * u;
-        vc = shrink * v;
+        precise rho = precise_root(precise_add(precise_mul(u, u), precise_mul(v, v))), radius = precise_load(face->extent[0]);
+        precise shrink = precise_less(radius, rho) ? precise_quotient(radius, rho) : precise_from(R(1.0));
+        uc = precise_mul(shrink, u);
+        vc = precise_mul(shrink, v);
     }
-    r.on_face = walls_within(face, u, v);
-    r.point = add_scaled(add_scaled(origin, uc, e1), vc, e2);
-    vec3 apart = r.on_face ? scale(height, normal) : sub(x, r.point);
-    r.distance = r.on_face ? fabs(height) : sqrt(dot3(apart, apart));
-    r.outward = r.distance > R(0.0) ? scale(R(1.0) / r.distance, apart) : normal;
+    r.on_face = walls_within(face, rounded(u), rounded(v));
+    r.point = precise3_add(precise3_add(origin, precise3_scale(uc, e1)), precise3_scale(vc, e2));
+    precise3 apart = precise3_sub(x, r.point);
+    if (r.on_face)
+        apart = precise3_scale(height, normal);
+    r.distance = precise_abs(height);
+    if (!r.on_face)
+        r.distance = precise_root(precise3_dot(apart, apart));
+    real distance = rounded(r.distance);
+    r.outward = distance > R(0.0) ? scale(R(1.0) / distance, rounded3(apart)) : rounded3(normal);
     return r;
 }
 
 /* True where another face has the contact that this face would make with its edge. */
-INLINE bool walls_taken(const __global clast_face *row, int face_count, int index, vec3 x, const wall_nearest *mine)
+INLINE bool walls_taken(const __global clast_face *row, int face_count, int index, precise3 x, const wall_nearest *mine)
 {
-    real near = R(1e-6) * mine->distance;
+    real near = R(1e-6) * rounded(mine->distance);
     for (int f = 0; f < face_count; f++) {
         if (f == index || walls_are_twins(row + f, row + index))
             continue;
         wall_nearest there = walls_find(row + f, mine->point);
-        if (fabs(there.distance) > near)
+        if (fabs(rounded(there.distance)) > near)
             continue;
         wall_nearest theirs = walls_find(row + f, x);
-        real gain = mine->distance - fabs(theirs.distance);
+        real gain = rounded(precise_sub(mine->distance, precise_abs(theirs.distance)));
         if (gain > near || (gain > -near && (theirs.on_face || f < index)))
             return true;
     }
     return false;
 }
 
-INLINE void walls_contact(const __global clast_face *row, int face_count, int index, vec3 x, vec3 velocity_i, contact *c, wall_touch *touch)
+INLINE void walls_contact(const __global clast_face *row, int face_count, int index, precise3 x, vec3 velocity_i, contact *c, wall_touch *touch)
 {
     wall_nearest mine = walls_find(row + index, x);
-    bool taken = !mine.on_face && mine.distance < c->radius_i && walls_taken(row, face_count, index, x, &mine);
+    bool taken = !mine.on_face && rounded(mine.distance) <= c->radius_i && walls_taken(row, face_count, index, x, &mine);
     walls_fill(row + index, scale(R(-1.0), mine.outward), mine.point, mine.distance, mine.on_face, velocity_i, c, touch);
     if (walls_is_round(row + index))
         c->turn = walls_turn_round(row + index, x, velocity_i, &mine, c, touch);
-    touch->distance = taken ? R(1e30) : touch->distance;
+    if (taken)
+        touch->distance = precise_from(R(1e30));
 }

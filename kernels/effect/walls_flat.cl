@@ -4,11 +4,12 @@
 #define walls_find_round(face, origin, axis, from) walls_nowhere(origin)
 #define walls_turn_round(face, x, velocity_i, mine, c, touch) ((c)->turn)
 
-INLINE wall_nearest walls_nowhere(vec3 origin)
+INLINE wall_nearest walls_nowhere(precise3 origin)
 {
     wall_nearest r;
-    r.point = r.outward = origin;
-    r.distance = R(1e30);
+    r.point = origin;
+    r.outward = rounded3(origin);
+    r.distance = precise_from(R(1e30));
     r.on_face = false;
     return r;
 }

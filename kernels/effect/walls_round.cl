@@ -8,57 +8,65 @@
 
 /* Cylindrical coordinates about the axis: height over the first end, distance from the axis, and the direction away from it. */
 typedef struct wall_polar {
-    real height, off;
-    vec3 away;
+    precise height, off;
+    precise3 away;
 } wall_polar;
 
-INLINE wall_polar walls_polar(const __global clast_face *face, vec3 axis, vec3 from)
+INLINE wall_polar walls_polar(const __global clast_face *face, precise3 axis, precise3 from)
 {
     wall_polar p;
-    p.height = dot3(from, axis);
-    vec3 across = add_scaled(from, -p.height, axis);
-    p.off = sqrt(dot3(across, across));
-    bool apart = p.off > R(0.0);
-    real inverse = R(1.0) / (apart ? p.off : R(1.0));
-    vec3 side = WALLS_VECTOR(face->e1);
-    p.away = v3(apart ? inverse * across.x : side.x, apart ? inverse * across.y : side.y, apart ? inverse * across.z : side.z);
+    p.height = precise3_dot(from, axis);
+    precise3 across = precise3_sub(from, precise3_scale(p.height, axis));
+    p.off = precise_root(precise3_dot(across, across));
+    p.away = PRECISE3(face->e1);
+    if (rounded(p.off) > R(0.0))
+        p.away = precise3_scale(precise_quotient(precise_from(R(1.0)), p.off), across);
     return p;
 }
 
-INLINE wall_nearest walls_find_round(const __global clast_face *face, vec3 origin, vec3 axis, vec3 from)
+INLINE wall_nearest walls_find_round(const __global clast_face *face, precise3 origin, precise3 axis, precise3 from)
 {
     wall_polar at = walls_polar(face, axis, from);
-    real sign = face->shape == CLAST_FACE_ROUND_FAR ? R(-1.0) : R(1.0);
-    real up = (real)face->slant[0], off = (real)face->slant[1], length = (real)face->slant_length, first = (real)face->extent[0];
-    real beyond = sign * at.off - first; /* negative inside of a cylinder */
-    real along = at.height * up + beyond * off, inward = at.height * off - beyond * up;
-    real nearest = along < R(0.0) ? R(0.0) : (along > length ? length : along);
+    precise sign = precise_from(face->shape == CLAST_FACE_ROUND_FAR ? R(-1.0) : R(1.0)), zero = precise_from(R(0.0));
+    precise up = precise_load(face->slant[0]), off = precise_load(face->slant[1]);
+    precise length = precise_load(face->slant_length), first = precise_load(face->extent[0]);
+    precise beyond = precise_sub(precise_mul(sign, at.off), first); /* negative inside of a cylinder */
+    precise along = precise_add(precise_mul(at.height, up), precise_mul(beyond, off));
+    precise inward = precise_sub(precise_mul(at.height, off), precise_mul(beyond, up)), nearest = along;
+    if (precise_less(along, zero))
+        nearest = zero;
+    if (precise_less(length, along))
+        nearest = length;
     wall_nearest r;
-    r.on_face = along > R(1e-9) * length && along < R(0.999999999) * length;
-    real apart_up = at.height - nearest * up, apart_off = beyond - nearest * off;
-    r.distance = r.on_face ? fabs(inward) : sqrt(apart_up * apart_up + apart_off * apart_off);
-    bool apart = r.distance > R(0.0);
-    real inverse = R(1.0) / (apart ? r.distance : R(1.0)), side = inward < R(0.0) ? R(-1.0) : R(1.0);
-    real outward_up = r.on_face || !apart ? side * off : inverse * apart_up;
-    real outward_off = r.on_face || !apart ? -side * up : inverse * apart_off;
-    r.outward = add_scaled(scale(outward_up, axis), sign * outward_off, at.away);
-    r.point = add_scaled(add_scaled(origin, nearest * up, axis), sign * (first + nearest * off), at.away);
+    r.on_face = rounded(along) > SEAM * rounded(length) && rounded(along) < (R(1.0) - SEAM) * rounded(length);
+    precise apart_up = precise_sub(at.height, precise_mul(nearest, up)), apart_off = precise_sub(beyond, precise_mul(nearest, off));
+    r.distance = precise_abs(inward);
+    if (!r.on_face)
+        r.distance = precise_root(precise_add(precise_mul(apart_up, apart_up), precise_mul(apart_off, apart_off)));
+    real distance = rounded(r.distance), side = rounded(inward) < R(0.0) ? R(-1.0) : R(1.0);
+    bool apart = distance > R(0.0);
+    real inverse = R(1.0) / (apart ? distance : R(1.0));
+    real outward_up = r.on_face || !apart ? side * rounded(off) : inverse * rounded(apart_up);
+    real outward_off = r.on_face || !apart ? -side * rounded(up) : inverse * rounded(apart_off);
+    r.outward = add_scaled(scale(outward_up, rounded3(axis)), rounded(sign) * outward_off, rounded3(at.away));
+    precise reach = precise_mul(sign, precise_add(first, precise_mul(nearest, off)));
+    r.point = precise3_add(precise3_add(origin, precise3_scale(precise_mul(nearest, up), axis)), precise3_scale(reach, at.away));
     return r;
 }
 
 /* The normal turns with the wall, with the centre's way about the axis, and at a rim also about the rim. Close to the axis the second rate
  * is kept finite: springs that turn faster than that have lost their meaning. */
-INLINE vec3 walls_turn_round(const __global clast_face *face, vec3 x, vec3 velocity_i, const wall_nearest *mine, const contact *c,
+INLINE vec3 walls_turn_round(const __global clast_face *face, precise3 x, vec3 velocity_i, const wall_nearest *mine, const contact *c,
                              const wall_touch *touch)
 {
-    vec3 axis = WALLS_VECTOR(face->normal);
-    wall_polar at = walls_polar(face, axis, sub(x, WALLS_VECTOR(face->origin)));
-    vec3 at_centre = add(WALLS_VECTOR(face->velocity), cross3(c->spin_j, sub(x, touch->pivot)));
-    vec3 u = sub(velocity_i, at_centre), round = cross3(axis, at.away);
-    real about = dot3(u, round), least = R(0.01) * c->radius_i, off = at.off > least ? at.off : least;
-    real rate = about * at.off / (off * off);
+    vec3 axis = from3(face->normal);
+    wall_polar at = walls_polar(face, PRECISE3(face->normal), precise3_sub(x, PRECISE3(face->origin)));
+    vec3 at_centre = add(from3(face->velocity), cross3(c->spin_j, rounded3(precise3_sub(x, touch->pivot))));
+    vec3 u = sub(velocity_i, at_centre), round = cross3(axis, rounded3(at.away));
+    real about = dot3(u, round), least = R(0.01) * c->radius_i, away = rounded(at.off), off = away > least ? away : least;
+    real rate = about * away / (off * off);
     vec3 turn = add_scaled(c->spin_j, rate, axis);
-    vec3 meridian = add_scaled(u, -about, round), passing = scale(R(-1.0) / mine->distance, cross3(c->n, meridian));
+    vec3 meridian = add_scaled(u, -about, round), passing = scale(R(-1.0) / rounded(mine->distance), cross3(c->n, meridian));
     bool rim = !mine->on_face;
     turn = add(turn, v3(rim ? passing.x : R(0.0), rim ? passing.y : R(0.0), rim ? passing.z : R(0.0)));
     return add_scaled(turn, -dot3(turn, c->n), c->n);

@@ -17,7 +17,7 @@ INLINE real motion_overlap(int mover_i, int mover_j, real overlap)
     return overlap;
 }
 
-INLINE vec3 motion_position(__global const clast_mover *movers, int mover, vec3 free, vec3 start)
+INLINE precise3 motion_position(__global const clast_mover *movers, int mover, precise3 free, precise3 start)
 {
     (void)movers;
     (void)mover;
@@ -25,7 +25,7 @@ INLINE vec3 motion_position(__global const clast_mover *movers, int mover, vec3 
     return free;
 }
 
-INLINE vec3 motion_velocity(__global const clast_mover *movers, int mover, vec3 free, vec3 x)
+INLINE precise3 motion_velocity(__global const clast_mover *movers, int mover, precise3 free, precise3 x)
 {
     (void)movers;
     (void)mover;
@@ -33,7 +33,7 @@ INLINE vec3 motion_velocity(__global const clast_mover *movers, int mover, vec3 
     return free;
 }
 
-INLINE vec3 motion_spin(__global const clast_mover *movers, int mover, vec3 free)
+INLINE precise3 motion_spin(__global const clast_mover *movers, int mover, precise3 free)
 {
     (void)movers;
     (void)mover;

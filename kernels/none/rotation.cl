@@ -4,6 +4,7 @@
 #define ROTATION_OBSERVE_FIELDS(READ, WRITE)
 #define ROTATION_LIMIT_FIELDS(READ, WRITE)
 #define ROTATION_LOAD(launch, i) v3(R(0.0), R(0.0), R(0.0))
+#define ROTATION_PRECISE(launch, i) precise3_from(v3(R(0.0), R(0.0), R(0.0)))
 #define ROTATION_STORE(launch, i, w) (void)(w)
 #define ROTATION_STORE_TORQUE(launch, k, owner_torque, other_torque) (void)(owner_torque), (void)(other_torque)
 #define ROTATION_GATHER(launch, k, sign) v3(R(0.0), R(0.0), R(0.0))
@@ -24,7 +25,7 @@
         t.stiffness = t.damping = r.stiffness = r.damping = R(0.0);           \
     } while (0)
 
-INLINE vec3 rotation_advance(vec3 spin, vec3 torque, real inertia, real dt)
+INLINE precise3 rotation_advance(precise3 spin, vec3 torque, real inertia, real dt)
 {
     (void)torque;
     (void)inertia;

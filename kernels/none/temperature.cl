@@ -3,6 +3,7 @@
 #define TEMPERATURE_PARTICLE_FIELDS(READ, WRITE)
 #define TEMPERATURE_OF_BODY(i) R(0.0)
 #define TEMPERATURE_OF_GRAIN(i) R(0.0)
+#define TEMPERATURE_PRECISE(i) precise_from(R(0.0))
 #define TEMPERATURE_CONSTANTS(row) ((__global const real *)0)
 #define TEMPERATURE_STORE(i, t) (void)(t)
 
@@ -12,7 +13,7 @@ INLINE real temperature_capacity(const grain *g)
     return R(1.0);
 }
 
-INLINE real temperature_after(real temperature, real rise)
+INLINE precise temperature_after(precise temperature, real rise)
 {
     (void)rise;
     return temperature;

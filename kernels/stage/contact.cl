@@ -1,7 +1,7 @@
 /* From records to forces: what the pair stage, the probe and the step limit share. A record is a pair of grains, or a grain and a face of a
  * wall; records of walls stand in work-groups of their own behind the pairs. Rows that pad a work-group name the same grain twice. */
 #define PAIR_FIELDS(READ, WRITE)                                                                                          \
-    READ(int, owner) READ(int, other) READ(real, position) READ(real, velocity) READ(real, radius) READ(real, mass)            \
+    READ(int, owner) READ(int, other) READ(exact, position) READ(exact, velocity) READ(exact, radius) READ(real, mass)          \
     READ(real, contact_constants) \
     WRITE(real, force) COMPOSITION_PAIR_FIELDS(READ, WRITE) MOTION_PAIR_FIELDS(READ, WRITE) ROTATION_PAIR_FIELDS(READ, WRITE)    \
     BONDING_PAIR_FIELDS(READ, WRITE) BOND_PAIR_FIELDS(READ, WRITE) COHESION_PAIR_FIELDS(READ, WRITE)                           \
@@ -27,12 +27,14 @@ INLINE void contact_complete(contact *c)
 INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR_DECLARE)
 {
     int i = owner[k], j = other[k];
-    vec3 d = periodic_nearest(launch, sub(GRAIN3(position, j), GRAIN3(position, i)));
+    precise3 apart_by = periodic_nearest(launch, precise3_sub(PRECISE_GRAIN3(position, j), PRECISE_GRAIN3(position, i)));
+    vec3 d = rounded3(apart_by);
     vec3 v_i = GRAIN3(velocity, i), v_j = GRAIN3(velocity, j), u = sub(v_i, v_j);
     vec3 past = sub(INTEGRATOR_PAST_VELOCITY(i, v_i), INTEGRATOR_PAST_VELOCITY(j, v_j));
     real d2 = dot3(d, d);
-    c->radius_i = radius[i];
-    c->radius_j = radius[j];
+    precise radius_i = precise_load(radius[i]), radius_j = precise_load(radius[j]);
+    c->radius_i = rounded(radius_i);
+    c->radius_j = rounded(radius_j);
     c->spin_i = ROTATION_LOAD(launch, i);
     c->spin_j = ROTATION_LOAD(launch, j);
     c->past_spin_i = INTEGRATOR_PAST_SPIN(i, c->spin_i);
@@ -44,7 +46,7 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     real both = R(1.0) / (sum * mass_sum); /* one division for both reciprocals */
     bool apart = d2 > R(0.0);
     real inverse = R(1.0) / sqrt(apart ? d2 : R(1.0)), distance = d2 * inverse;
-    real overlap = sum - distance;
+    real overlap = sphere_overlap(apart_by, distance, radius_i, radius_j);
     c->gap = apart ? -overlap : R(1e30);
     overlap = apart && overlap > R(0.0) ? overlap : R(0.0);
     c->touch = overlap;
@@ -69,16 +71,18 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
 INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_touch *touch PAIR_DECLARE)
 {
     int i = owner[k];
-    vec3 x = GRAIN3(position, i), v = GRAIN3(velocity, i);
-    c->radius_i = radius[i];
+    precise3 x = PRECISE_GRAIN3(position, i);
+    precise radius_i = precise_load(radius[i]);
+    vec3 v = GRAIN3(velocity, i);
+    c->radius_i = rounded(radius_i);
     c->radius_j = c->radius_i;
     c->spin_i = ROTATION_LOAD(launch, i);
     c->past_spin_i = INTEGRATOR_PAST_SPIN(i, c->spin_i);
     c->mass_i = mass[i];
-    c->mass_j = R(1e30);
+    c->mass_j = HEAVY;
     WALLS_CONTACT(launch, other[k], x, v, c, touch);
     c->class = composition_class(COMPOSITION_GRAIN(i), touch->party);
-    real overlap = c->radius_i - touch->distance;
+    real overlap = rounded(precise_sub(radius_i, touch->distance));
     c->gap = -overlap;
     c->touch = overlap > R(0.0) ? overlap : R(0.0);
     c->overlap = motion_overlap(MOTION_GRAIN(i), 0, c->touch);

@@ -21,7 +21,7 @@ __kernel void heat_conductances(const clast_launch launch PAIR_DECLARE)
  * at most `hottest`, and by all. Reads the records' conductances. */
 #define HEAT_LIMITS 4
 
-__kernel void heat_limit(const clast_launch launch, __global double *restrict partial, const double hottest PARTICLE_DECLARE)
+__kernel void heat_limit(const clast_launch launch, __global exact *restrict partial, const real hottest PARTICLE_DECLARE)
 {
     int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
     real least[HEAT_LIMITS] = {R(1e30), R(1e30), R(1e30), R(1e30)};
@@ -32,41 +32,42 @@ __kernel void heat_limit(const clast_launch launch, __global double *restrict pa
         uint last = slot_offset[i / CLAST_BLOCK + 1];
         for (uint s = slot_offset[i / CLAST_BLOCK] + i % CLAST_BLOCK; s < last && slots[s] != 0; s += CLAST_BLOCK)
             conduction += CONDUCTION_GATHER(&launch, (slots[s] > 0 ? slots[s] : -slots[s]) - 1, R(1.0));
-        real convection = convection_coefficient(&g, g.temperature), radiation = radiation_coefficient(&g, (real)hottest);
+        real convection = convection_coefficient(&g, g.temperature), radiation = radiation_coefficient(&g, hottest);
         const real rates[HEAT_LIMITS] = {conduction, convection, radiation, conduction + convection + radiation};
         for (int q = 0; q < HEAT_LIMITS; q++)
             least[q] = rates[q] > R(0.0) ? fmin(least[q], temperature_capacity(&g) / rates[q]) : least[q];
     }
     for (int q = 0; q < HEAT_LIMITS; q++)
-        partial[HEAT_LIMITS * chunk + q] = least[q];
+        partial[HEAT_LIMITS * chunk + q] = precise_store(precise_from(least[q]));
 }
 
-/* Sums in the order of permanent ids: heat content, sum of temperatures, number of grains, smallest and largest temperature, and what each
+/* Sums in the order of permanent ids: heat content, sum of temperatures, number of grains, the smallest with its sign turned and the largest temperature, and what each
  * path has brought, where that is kept. */
 #define HEAT_SUMS (5 + CLAST_TALLIES)
 
-__kernel void heat_sums(const clast_launch launch, __global const int *restrict where, __global double *restrict partial,
+__kernel void heat_sums(const clast_launch launch, __global const int *restrict where, __global exact *restrict partial,
                         const int id_count PARTICLE_DECLARE)
 {
     int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, id_count);
-    double sum[HEAT_SUMS];
+    precise sum[HEAT_SUMS];
     for (int q = 0; q < HEAT_SUMS; q++)
-        sum[q] = 0.0;
-    sum[3] = 1e30;
+        sum[q] = precise_from(R(0.0));
+    sum[3] = precise_from(R(-1e30));
     for (int n = first; n < end; n++) {
         int i = where[n];
         if (i < 0)
             continue;
         grain g;
         particle_grain(&launch, i, &g PARTICLE_PASS);
-        sum[0] += temperature_capacity(&g) * g.temperature;
-        sum[1] += g.temperature;
-        sum[2] += 1.0;
-        sum[3] = fmin(sum[3], (double)g.temperature);
-        sum[4] = fmax(sum[4], (double)g.temperature);
+        precise t = TEMPERATURE_PRECISE(i);
+        sum[0] = precise_add_scaled(sum[0], temperature_capacity(&g), t);
+        sum[1] = precise_add(sum[1], t);
+        sum[2] = precise_add(sum[2], precise_from(R(1.0)));
+        sum[3] = precise_max(sum[3], precise_sub(precise_from(R(0.0)), t));
+        sum[4] = precise_max(sum[4], t);
         for (int q = 0; q < CLAST_TALLIES; q++)
-            sum[5 + q] += HEAT_TALLY_OF(i, q);
+            sum[5 + q] = precise_add(sum[5 + q], HEAT_TALLY_OF(i, q));
     }
     for (int q = 0; q < HEAT_SUMS; q++)
-        partial[HEAT_SUMS * chunk + q] = sum[q];
+        partial[HEAT_SUMS * chunk + q] = precise_store(sum[q]);
 }

@@ -5,38 +5,46 @@
 /* kinetic and rotational energy; potential in gravity; mass; momentum; angular momentum about the origin; largest speed and m g r. */
 #define OBSERVE_PARTICLE_SUMS 12
 
-__kernel void observe_particles(const clast_launch launch, __global const int *restrict where, __global const real *restrict position,
-                                __global const real *restrict velocity, __global const real *restrict radius, __global const real *restrict mass,
-                                __global double *restrict partial, const int id_count ROTATION_OBSERVE_FIELDS(DECLARE_READ, DECLARE_WRITE))
+INLINE void observe_add(precise *sum, precise value)
+{
+    *sum = precise_add(*sum, value);
+}
+
+INLINE void observe_add3(precise *sum, precise factor, precise3 value)
+{
+    observe_add(sum, precise_mul(factor, value.x));
+    observe_add(sum + 1, precise_mul(factor, value.y));
+    observe_add(sum + 2, precise_mul(factor, value.z));
+}
+
+__kernel void observe_particles(const clast_launch launch, __global const int *restrict where, __global const exact *restrict position,
+                                __global const exact *restrict velocity, __global const exact *restrict radius, __global const real *restrict mass,
+                                __global exact *restrict partial, const int id_count ROTATION_OBSERVE_FIELDS(DECLARE_READ, DECLARE_WRITE))
 {
     int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, id_count);
-    double sum[OBSERVE_PARTICLE_SUMS];
+    precise sum[OBSERVE_PARTICLE_SUMS], one_half = precise_from(R(0.5));
     for (int q = 0; q < OBSERVE_PARTICLE_SUMS; q++)
-        sum[q] = 0.0;
-    vec3 g = from3(launch.gravity);
+        sum[q] = precise_from(R(0.0));
+    precise3 g = PRECISE3(launch.gravity);
     for (int n = first; n < end; n++) {
         int i = where[n];
         if (i < 0)
             continue;
-        vec3 x = GRAIN3(position, i), v = GRAIN3(velocity, i);
-        vec3 w = ROTATION_LOAD(&launch, i);
-        real m = mass[i], inertia = R(0.4) * m * radius[i] * radius[i];
-        vec3 orbital = cross3(x, v);
-        sum[0] += R(0.5) * m * dot3(v, v);
-        sum[1] += R(0.5) * inertia * dot3(w, w);
-        sum[2] -= m * dot3(g, x);
-        sum[3] += m;
-        sum[4] += m * v.x;
-        sum[5] += m * v.y;
-        sum[6] += m * v.z;
-        sum[7] += m * orbital.x + inertia * w.x;
-        sum[8] += m * orbital.y + inertia * w.y;
-        sum[9] += m * orbital.z + inertia * w.z;
-        sum[10] = fmax(sum[10], (double)dot3(v, v));
-        sum[11] += m * radius[i];
+        precise3 x = PRECISE_GRAIN3(position, i), v = PRECISE_GRAIN3(velocity, i), w = ROTATION_PRECISE(&launch, i);
+        precise m = precise_from(mass[i]), r = precise_load(radius[i]);
+        precise inertia = precise_mul(precise_mul(precise_mul(precise_from(R(0.4)), m), r), r);
+        observe_add(sum, precise_mul(precise_mul(one_half, m), precise3_dot(v, v)));
+        observe_add(sum + 1, precise_mul(precise_mul(one_half, inertia), precise3_dot(w, w)));
+        sum[2] = precise_sub(sum[2], precise_mul(m, precise3_dot(g, x)));
+        observe_add(sum + 3, m);
+        observe_add3(sum + 4, m, v);
+        observe_add3(sum + 7, m, precise3_cross(x, v));
+        observe_add3(sum + 7, inertia, w);
+        sum[10] = precise_max(sum[10], precise3_dot(v, v));
+        observe_add(sum + 11, precise_mul(m, r));
     }
     for (int q = 0; q < OBSERVE_PARTICLE_SUMS; q++)
-        partial[chunk * OBSERVE_PARTICLE_SUMS + q] = sum[q];
+        partial[chunk * OBSERVE_PARTICLE_SUMS + q] = precise_store(sum[q]);
 }
 
 /* Per record, where its force stands: overlap over the smaller radius, elastic energy, overlap. History and pair list stay. */
@@ -154,8 +162,8 @@ INLINE real limit_largest(const limit_block *b)
 
 /* Per chunk of grains the smallest limit with the normal modes alone, and with all. */
 __kernel void limit_particles(const clast_launch launch, __global const uint *restrict slot_offset, __global const int *restrict slots,
-                              __global const real *restrict force, __global const real *restrict radius, __global const real *restrict mass,
-                              __global double *restrict partial ROTATION_LIMIT_FIELDS(DECLARE_READ, DECLARE_WRITE))
+                              __global const real *restrict force, __global const exact *restrict radius, __global const real *restrict mass,
+                              __global exact *restrict partial ROTATION_LIMIT_FIELDS(DECLARE_READ, DECLARE_WRITE))
 {
     int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
     real alone = R(1e30), all = R(1e30);
@@ -171,7 +179,7 @@ __kernel void limit_particles(const clast_launch launch, __global const uint *re
             vec3 n;
             mode normal, tangential, rolling;
             LIMIT_LOAD(&launch, k, n, normal, tangential, rolling);
-            real spin = R(2.5) / (radius[i] * radius[i]);
+            real r = GRAIN_RADIUS(i), spin = R(2.5) / (r * r);
             limit_contact(&stiff, n, normal.stiffness, tangential.stiffness, spin * rolling.stiffness);
             limit_contact(&damp, n, normal.damping, tangential.damping, spin * rolling.damping);
             limit_contact(&stiff_normal, n, normal.stiffness, R(0.0), R(0.0));
@@ -181,8 +189,8 @@ __kernel void limit_particles(const clast_launch launch, __global const uint *re
         alone = fmin(alone, limit_step(m * limit_largest(&stiff_normal), m * limit_largest(&damp_normal)));
         all = fmin(all, limit_step(m * limit_largest(&stiff), m * limit_largest(&damp)));
     }
-    partial[2 * chunk] = alone;
-    partial[2 * chunk + 1] = all;
+    partial[2 * chunk] = precise_store(precise_from(alone));
+    partial[2 * chunk + 1] = precise_store(precise_from(all));
 }
 
 /* The contact to expect between two bodies of a class: that of an impact at `speed`, or under `weight`, whichever is deeper.
@@ -197,22 +205,22 @@ INLINE void expected_at(contact *c, real overlap)
     contact_complete(c);
 }
 
-__kernel void limit_expected(__global const real *restrict contact_constants, __global double *restrict result, const int class, const double radius_i,
-                             const double radius_j, const double mass_i, const double mass_j, const double speed, const double weight)
+__kernel void limit_expected(__global const real *restrict contact_constants, __global exact *restrict result, const int class, const real radius_i,
+                             const real radius_j, const real mass_i, const real mass_j, const real speed, const real weight)
 {
     contact c;
-    bool wall = mass_j <= 0.0;
-    c.radius_i = (real)radius_i;
-    c.radius_j = wall ? c.radius_i : (real)radius_j;
-    c.mass_i = (real)mass_i;
-    c.mass_j = wall ? R(1e30) : (real)mass_j;
+    bool wall = mass_j <= R(0.0);
+    c.radius_i = radius_i;
+    c.radius_j = wall ? c.radius_i : radius_j;
+    c.mass_i = mass_i;
+    c.mass_j = wall ? HEAVY : mass_j;
     c.radius_eff = wall ? c.radius_i : c.radius_i * c.radius_j / (c.radius_i + c.radius_j);
     c.mass_eff = c.mass_i * c.mass_j / (c.mass_i + c.mass_j);
     c.approach = R(0.0);
     c.class = class;
     c.value = contact_constants + class * CONTACT_CONSTANTS;
     c.dt = c.elapsed = R(0.0);
-    real energy = R(0.5) * c.mass_eff * (real)speed * (real)speed, impact_low = R(0.0), impact_high = c.radius_eff;
+    real energy = R(0.5) * c.mass_eff * speed * speed, impact_low = R(0.0), impact_high = c.radius_eff;
     real rest_low = R(0.0), rest_high = c.radius_eff;
     real pulled_low = R(0.0), pulled_high = c.radius_eff; /* an impact with what pulls: deeper */
     bond_state bond = bond_expected(&c);
@@ -232,7 +240,7 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
         middle = R(0.5) * (rest_low + rest_high);
         expected_at(&c, middle);
         normal_total(&c, &out);
-        deep = out.normal > (real)weight;
+        deep = out.normal > weight;
         rest_high = deep ? middle : rest_high;
         rest_low = deep ? rest_low : middle;
     }
@@ -241,7 +249,7 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
     for (int n = 0; n < EXPECTED_POINTS; n++) {
         real phi = R(1.5707963267948966) * ((real)n + R(0.5)) / (real)EXPECTED_POINTS;
         expected_at(&c, impact_high * sin(phi));
-        real left = (real)speed * (real)speed - R(2.0) * normal_energy(&c) / c.mass_eff;
+        real left = speed * speed - R(2.0) * normal_energy(&c) / c.mass_eff;
         duration += left > R(0.0) ? cos(phi) / sqrt(left) : R(0.0);
     }
     duration *= R(2.0) * impact_high * R(1.5707963267948966) / (real)EXPECTED_POINTS;
@@ -252,65 +260,65 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
     cohesion_mode(&c, &cohesion, &a);
     real spin_i = R(1.0) / (R(0.4) * c.mass_i * c.radius_i * c.radius_i);
     real spin_both = wall ? spin_i : spin_i + R(1.0) / (R(0.4) * c.mass_j * c.radius_j * c.radius_j);
-    result[0] = c.overlap;
-    result[1] = limit_step(a.stiffness * inverse, a.damping * inverse);
-    result[2] = limit_step(R(3.5) * t.stiffness * inverse + spin_both * r.stiffness, R(3.5) * t.damping * inverse + spin_both * r.damping);
-    result[3] = duration;
+    real turning = limit_step(R(3.5) * t.stiffness * inverse + spin_both * r.stiffness, R(3.5) * t.damping * inverse + spin_both * r.damping);
+    result[0] = precise_store(precise_from(c.overlap));
+    result[1] = precise_store(precise_from(limit_step(a.stiffness * inverse, a.damping * inverse)));
+    result[2] = precise_store(precise_from(turning));
+    result[3] = precise_store(precise_from(duration));
 }
 
 /* Guards, per chunk: first grain that is not a number, that moves too far in a step, that has left the domain (sorted indices; -1: none),
- * and the largest speed squared. Numbers are tested by their bits, so that no compiler option can lose the test. */
-INLINE bool guard_is_number(double x)
-{
-    return ((as_ulong(x) >> 52) & 0x7ff) != 0x7ff;
-}
-
+ * and the largest speed squared. Numbers are tested by their bits (is_number), so that no compiler option can lose the test. */
 #define GUARD_FINDINGS 4
 
-__kernel void guard_particles(const clast_launch launch, __global const real *restrict position, __global const real *restrict velocity,
-                              __global double *restrict partial, const int bounded)
+__kernel void guard_particles(const clast_launch launch, __global const exact *restrict position, __global const exact *restrict velocity,
+                              __global exact *restrict partial, const int bounded)
 {
     int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
-    double bad = -1.0, fastest = -1.0, left = -1.0, most = 0.0;
+    int bad = -1, fastest = -1, left = -1;
+    real most = R(0.0);
+    vec3 low = from3(launch.low), high = from3(launch.high);
     for (int i = first; i < end; i++) {
         vec3 x = GRAIN3(position, i), v = GRAIN3(velocity, i);
-        double speed2 = dot3(v, v);
-        if (!guard_is_number(x.x + x.y + x.z) || !guard_is_number(speed2)) {
-            if (bad < 0.0)
+        real speed2 = dot3(v, v);
+        if (!is_number(x.x + x.y + x.z) || !is_number(speed2)) {
+            if (bad < 0)
                 bad = i;
         } else {
             if (speed2 > most) {
                 most = speed2;
                 fastest = i;
             }
-            bool inside = x.x >= (real)launch.low[0] && x.x <= (real)launch.high[0] && x.y >= (real)launch.low[1] &&
-                          x.y <= (real)launch.high[1] && x.z >= (real)launch.low[2] && x.z <= (real)launch.high[2];
-            if (bounded && !inside && left < 0.0)
+            bool inside = x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y && x.z >= low.z && x.z <= high.z;
+            if (bounded && !inside && left < 0)
                 left = i;
         }
     }
-    partial[chunk * GUARD_FINDINGS] = bad;
-    partial[chunk * GUARD_FINDINGS + 1] = fastest;
-    partial[chunk * GUARD_FINDINGS + 2] = left;
-    partial[chunk * GUARD_FINDINGS + 3] = most;
+    partial[chunk * GUARD_FINDINGS] = precise_store(precise_from_int(bad));
+    partial[chunk * GUARD_FINDINGS + 1] = precise_store(precise_from_int(fastest));
+    partial[chunk * GUARD_FINDINGS + 2] = precise_store(precise_from_int(left));
+    partial[chunk * GUARD_FINDINGS + 3] = precise_store(precise_from(most));
 }
 
 /* Per chunk of records the largest overlap over the smaller radius, and its record. Geometry only: cheap, and touches no field. */
 __kernel void guard_records(const clast_launch launch, __global const int *restrict owner, __global const int *restrict other,
-                            __global const real *restrict position, __global const real *restrict radius, __global double *restrict partial,
+                            __global const exact *restrict position, __global const exact *restrict radius, __global exact *restrict partial,
                             const int pair_count)
 {
     int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, pair_count);
-    double most = 0.0, where = -1.0;
+    real most = R(0.0);
+    int where = -1;
     for (int k = first; k < end; k++) {
         int i = owner[k], j = other[k];
-        vec3 d = periodic_nearest(&launch, sub(GRAIN3(position, j), GRAIN3(position, i)));
-        double smaller = fmin(radius[i], radius[j]), ratio = (radius[i] + radius[j] - sqrt(dot3(d, d))) / smaller;
+        precise3 d = periodic_nearest(&launch, precise3_sub(PRECISE_GRAIN3(position, j), PRECISE_GRAIN3(position, i)));
+        precise radius_i = precise_load(radius[i]), radius_j = precise_load(radius[j]);
+        real smaller = fmin(rounded(radius_i), rounded(radius_j)), distance = sqrt(dot3(rounded3(d), rounded3(d)));
+        real ratio = sphere_overlap(d, distance, radius_i, radius_j) / smaller;
         if (ratio > most) {
             most = ratio;
             where = k;
         }
     }
-    partial[2 * chunk] = most;
-    partial[2 * chunk + 1] = where;
+    partial[2 * chunk] = precise_store(precise_from(most));
+    partial[2 * chunk + 1] = precise_store(precise_from_int(where));
 }

@@ -18,9 +18,9 @@
 
 /* The rest of a record once its geometry is known; `account` may add to the ledger, `keep` writes the history. */
 #define PAIR_LAWS(keep, account)                                             \
-    c.dt = (real)launch->dt;                                             \
-    c.elapsed = (real)INTEGRATOR_ELAPSED(launch);                        \
-    c.span = (real)launch->kick;                                         \
+    c.dt = number(launch->dt);                                           \
+    c.elapsed = number(INTEGRATOR_ELAPSED(launch));                      \
+    c.span = number(launch->kick);                                       \
     c.lag = INTEGRATOR_LAG * c.span;                                     \
     c.value = contact_constants + c.class * CONTACT_CONSTANTS;           \
     PAIR_LOAD_STATE(launch, k, s);                                       \
@@ -57,7 +57,8 @@
         contact_of_wall(launch, k, &c, &touch PAIR_PASS);                                           \
         PAIR_LAWS(keep, PAIR_WORK_OF_WALL);                                                         \
         CONDUCTION_STORE(launch, k, WALL_HEAT_FLOW(launch, other[k], &c, conduction_wall_conductance(&c))); \
-        vec3 on_wall = sub(cross3(total, sub(touch.point, touch.pivot)), out.rolling);              \
+        vec3 lever_wall = rounded3(precise3_sub(touch.point, touch.pivot));                         \
+        vec3 on_wall = sub(cross3(total, lever_wall), out.rolling);                                 \
         ROTATION_STORE_TORQUE(launch, k, on_owner, on_wall);                                        \
     }
 

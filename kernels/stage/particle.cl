@@ -1,7 +1,7 @@
 /* The particle stage: gathers the contacts of a grain in slot order, adds what acts on the grain itself, and advances it. */
 #define PARTICLE_FIELDS(READ, WRITE)                                                                                              \
-    READ(uint, slot_offset) READ(int, slots) READ(real, force) READ(real, radius) READ(real, mass) WRITE(real, position) WRITE(real, velocity)     \
-    READ(real, built_position) MOTION_PARTICLE_FIELDS(READ, WRITE) \
+    READ(uint, slot_offset) READ(int, slots) READ(real, force) READ(exact, radius) READ(real, mass) WRITE(exact, position) WRITE(exact, velocity)   \
+    READ(exact, built_position) MOTION_PARTICLE_FIELDS(READ, WRITE) \
     ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE) TEMPERATURE_PARTICLE_FIELDS(READ, WRITE)                \
     SUBSTANCE_PARTICLE_FIELDS(READ, WRITE) ENVIRONMENT_PARTICLE_FIELDS(READ, WRITE) CONDUCTION_PARTICLE_FIELDS(READ, WRITE)             \
     SOURCE_PARTICLE_FIELDS(READ, WRITE) THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE) LEDGER_PARTICLE_FIELDS(READ, WRITE)           \
@@ -38,7 +38,7 @@ INLINE void particle_grain(const clast_launch *launch, int i, grain *g PARTICLE_
 {
     g->position = GRAIN3(position, i);
     g->velocity = GRAIN3(velocity, i);
-    g->radius = radius[i];
+    g->radius = GRAIN_RADIUS(i);
     g->mass = mass[i];
     g->temperature = TEMPERATURE_OF_GRAIN(i);
     g->value = TEMPERATURE_CONSTANTS(SUBSTANCE_ROW(i));
@@ -50,15 +50,15 @@ INLINE void particle_grain(const clast_launch *launch, int i, grain *g PARTICLE_
 /* One thermal step of grain i, from the flows at its start. What a prescribed temperature takes comes from a source. */
 INLINE void particle_heat(const clast_launch *launch, int i, const grain *g, grain_heat *h PARTICLE_DECLARE)
 {
-    real dt = (real)launch->dt, apart = g->surroundings - g->temperature, capacity = temperature_capacity(g);
+    real dt = number(launch->dt), apart = g->surroundings - g->temperature, capacity = temperature_capacity(g);
     real given = SOURCE_HEAT(launch, i, g) + generation_heat(g) + THERMAL_GROUP_HEAT(launch, i);
     h->convection = dt * (convection_coefficient(g, g->temperature) * apart);
     h->radiation = dt * (radiation_coefficient(g, g->temperature) * apart);
     h->walls = dt * h->walls;
     real gain = dt * (h->contacts + given) + (h->convection + h->radiation);
-    real after = temperature_after(g->temperature, gain / capacity);
-    real held = THERMAL_GROUP_TEMPERATURE(launch, i, after);
-    h->sources = dt * given + capacity * (held - after);
+    precise after = temperature_after(TEMPERATURE_PRECISE(i), gain / capacity);
+    precise held = THERMAL_GROUP_TEMPERATURE(launch, i, after);
+    h->sources = dt * given + capacity * rounded(precise_sub(held, after));
     TEMPERATURE_STORE(i, held);
     HEAT_TALLY_ADD(i, h);
 }
@@ -66,21 +66,21 @@ INLINE void particle_heat(const clast_launch *launch, int i, const grain *g, gra
 /* One step of grain i; returns the square of its displacement since the table was built, relative to the common one. */
 INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t PARTICLE_DECLARE)
 {
-    real dt = (real)launch->dt, kick = (real)launch->kick, r = radius[i];
+    real dt = number(launch->dt), kick = number(launch->kick), r = GRAIN_RADIUS(i);
     real m = mass[i], inertia = R(0.4) * m * r * r;
     int mover_i = MOTION_GRAIN(i);
-    vec3 x = GRAIN3(position, i), v = GRAIN3(velocity, i), w = ROTATION_LOAD(launch, i);
+    precise3 x = PRECISE_GRAIN3(position, i), v = PRECISE_GRAIN3(velocity, i), w = ROTATION_PRECISE(launch, i);
     __global const clast_mover *row = MOTION_ROW(launch);
     f = add_scaled(f, m, from3(launch->gravity));
-    vec3 damped = body_force(f, v, m), damped_t = body_force(t, w, inertia);
+    vec3 damped = body_force(f, rounded3(v), m), damped_t = body_force(t, rounded3(w), inertia);
     vec3 a = scale(R(1.0) / m, damped);
-    vec3 v1 = integrate_velocity(INTEGRATOR_VELOCITY(i, v), a, kick);
-    vec3 w1 = rotation_advance(INTEGRATOR_SPIN(i, w), damped_t, inertia, kick);
-    vec3 x1 = motion_position(row, mover_i, integrate_position(x, v1, dt), x);
-    vec3 v2 = motion_velocity(row, mover_i, INTEGRATOR_AHEAD(v1, integrate_velocity(v1, a, R(0.5) * dt)), x1);
-    vec3 w2 = motion_spin(row, mover_i, INTEGRATOR_AHEAD(w1, rotation_advance(w1, damped_t, inertia, R(0.5) * dt)));
-    grain_step step = {m,        inertia,          kick, INTEGRATOR_VELOCITY(i, v), motion_velocity(row, mover_i, v1, x1), INTEGRATOR_SPIN(i, w),
-                       motion_spin(row, mover_i, w1), f, damped, t, damped_t, mover_i >= 0};
+    precise3 v1 = integrate_velocity(INTEGRATOR_VELOCITY(i, v), a, kick);
+    precise3 w1 = rotation_advance(INTEGRATOR_SPIN(i, w), damped_t, inertia, kick);
+    precise3 x1 = motion_position(row, mover_i, integrate_position(x, v1, dt), x);
+    precise3 v2 = motion_velocity(row, mover_i, INTEGRATOR_AHEAD(v1, integrate_velocity(v1, a, R(0.5) * dt)), x1);
+    precise3 w2 = motion_spin(row, mover_i, INTEGRATOR_AHEAD(w1, rotation_advance(w1, damped_t, inertia, R(0.5) * dt)));
+    grain_step step = {m, inertia, kick, rounded3(INTEGRATOR_VELOCITY(i, v)), rounded3(motion_velocity(row, mover_i, v1, x1)),
+                       rounded3(INTEGRATOR_SPIN(i, w)), rounded3(motion_spin(row, mover_i, w1)), f, damped, t, damped_t, mover_i >= 0};
     (void)step;
     INTEGRATOR_KEEP_VELOCITY(i, motion_velocity(row, mover_i, v1, x1));
     INTEGRATOR_KEEP_SPIN(i, motion_spin(row, mover_i, w1));
@@ -89,9 +89,10 @@ INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t P
     SET_GRAIN3(position, i, x1);
     SET_GRAIN3(velocity, i, v2);
     ROTATION_STORE(launch, i, w2);
-    ORIENTATION_ADVANCE(launch, i, w1);
+    ORIENTATION_ADVANCE(launch, i, rounded3(w1));
     LEDGER_ADVANCE(launch, i, &step);
-    vec3 moved = periodic_nearest(launch, sub(sub(x1, GRAIN3(built_position, i)), from3(launch->drift)));
+    precise3 since_built = precise3_sub(x1, PRECISE_GRAIN3(built_position, i));
+    vec3 moved = rounded3(periodic_nearest(launch, precise3_sub(since_built, PRECISE3(launch->drift))));
     return dot3(moved, moved);
 }
 
@@ -108,7 +109,7 @@ __kernel void particle_stage(const clast_launch launch, __global clast_control *
     particle_grain(&launch, i, &g PARTICLE_PASS);
     particle_heat(&launch, i, &g, &h PARTICLE_PASS);
     real travel2 = particle_advance(&launch, i, f, t PARTICLE_PASS);
-    if (i < launch.particle_count && !(travel2 <= (real)launch.travel2)) {
+    if (i < launch.particle_count && !(travel2 <= number(launch.travel2))) {
         /* whoever writes, writes the same */
         control->reason = CLAST_HALT_TRAVEL;
         control->halt_step = launch.step + 1;

@@ -12,7 +12,7 @@ INLINE int table_wrap(real t, int cells)
 INLINE int table_level(__global const clast_grid *grid, real r)
 {
     int level = 0;
-    real size = (real)grid->radius_max * R(0.5);
+    real size = number(grid->radius_max) * R(0.5);
     while (level + 1 < grid->level_count && r <= size) {
         level++;
         size *= R(0.5);
@@ -23,24 +23,24 @@ INLINE int table_level(__global const clast_grid *grid, real r)
 INLINE int table_cell(__global const clast_grid *grid, int level, vec3 x)
 {
     __global const clast_level *l = grid->level + level;
-    int cx = table_wrap((x.x - (real)grid->origin[0]) * (real)l->inverse_size[0], l->cells[0]);
-    int cy = table_wrap((x.y - (real)grid->origin[1]) * (real)l->inverse_size[1], l->cells[1]);
-    int cz = table_wrap((x.z - (real)grid->origin[2]) * (real)l->inverse_size[2], l->cells[2]);
+    int cx = table_wrap((x.x - number(grid->origin[0])) * number(l->inverse_size[0]), l->cells[0]);
+    int cy = table_wrap((x.y - number(grid->origin[1])) * number(l->inverse_size[1]), l->cells[1]);
+    int cz = table_wrap((x.z - number(grid->origin[2])) * number(l->inverse_size[2]), l->cells[2]);
     return l->first_cell + (cz * l->cells[1] + cy) * l->cells[0] + cx;
 }
 
 /* Cell and rank in it of every grain; what is outside a domain that drops its leavers goes to the last bucket. */
-__kernel void table_bin(const clast_launch launch, __global const clast_grid *restrict grid, __global const real *restrict position,
-                        __global const real *restrict radius, __global uint *restrict cell_of, __global uint *restrict rank_of,
+__kernel void table_bin(const clast_launch launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
+                        __global const exact *restrict radius, __global uint *restrict cell_of, __global uint *restrict rank_of,
                         __global uint *restrict cell_count)
 {
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
     vec3 x = GRAIN3(position, i);
-    int cell = table_cell(grid, table_level(grid, radius[i]), x);
-    bool inside = x.x >= (real)launch.low[0] && x.x <= (real)launch.high[0] && x.y >= (real)launch.low[1] && x.y <= (real)launch.high[1] &&
-                  x.z >= (real)launch.low[2] && x.z <= (real)launch.high[2];
+    int cell = table_cell(grid, table_level(grid, GRAIN_RADIUS(i)), x);
+    vec3 low = from3(launch.low), high = from3(launch.high);
+    bool inside = x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y && x.z >= low.z && x.z <= high.z;
     if (grid->drop_outside && !inside)
         cell = grid->cell_count;
     cell_of[i] = cell;
@@ -71,6 +71,17 @@ __kernel void table_order_cells(__global const uint *restrict cell_start, __glob
     }
 }
 
+__kernel void table_permute_exact(const clast_launch launch, __global const int *restrict order, __global const exact *restrict from,
+                                  __global exact *restrict to, const int components)
+{
+    int i = get_global_id(0);
+    if (i >= launch.particle_count)
+        return;
+    size_t old = (size_t)order[i] * components, now = (size_t)i * components;
+    for (int c = 0; c < components; c++)
+        to[now + c] = from[old + c];
+}
+
 __kernel void table_permute_real(const clast_launch launch, __global const int *restrict order, __global const real *restrict from,
                                  __global real *restrict to, const int components)
 {
@@ -91,13 +102,13 @@ __kernel void table_permute_int(const clast_launch launch, __global const int *r
 }
 
 /* True where i owns the pair with j and the two are within reach. */
-INLINE bool table_pairs(const clast_launch *launch, real skin, int i, vec3 xi, real ri, int id_i, int j, __global const real *restrict position,
-                        __global const real *restrict radius, __global const int *restrict id)
+INLINE bool table_pairs(const clast_launch *launch, real skin, int i, precise3 place, precise radius_i, int id_i, int j, __global const exact *restrict position,
+                        __global const exact *restrict radius, __global const int *restrict id)
 {
-    real rj = radius[j];
-    vec3 d = periodic_nearest(launch, sub(GRAIN3(position, j), xi));
-    real reach = ri + rj + skin;
-    bool owns = rj > ri || (rj == ri && id[j] > id_i);
+    precise radius_j = precise_load(radius[j]);
+    vec3 d = rounded3(periodic_nearest(launch, precise3_sub(PRECISE_GRAIN3(position, j), place)));
+    real reach = rounded(radius_i) + rounded(radius_j) + skin;
+    bool owns = precise_less(radius_i, radius_j) || (!precise_less(radius_j, radius_i) && id[j] > id_i);
     return j != i && owns && dot3(d, d) < reach * reach;
 }
 
@@ -106,9 +117,9 @@ INLINE bool table_pairs(const clast_launch *launch, real skin, int i, vec3 xi, r
     for (int l = table_level(grid, ri); l >= 0; l--) {                                                                        \
         __global const clast_level *v = grid->level + l;                                                                      \
         int n0 = v->cells[0], n1 = v->cells[1], n2 = v->cells[2];                                                             \
-        int cx = table_wrap((xi.x - (real)grid->origin[0]) * (real)v->inverse_size[0], n0);                                   \
-        int cy = table_wrap((xi.y - (real)grid->origin[1]) * (real)v->inverse_size[1], n1);                                   \
-        int cz = table_wrap((xi.z - (real)grid->origin[2]) * (real)v->inverse_size[2], n2);                                   \
+        int cx = table_wrap((xi.x - number(grid->origin[0])) * number(v->inverse_size[0]), n0);                               \
+        int cy = table_wrap((xi.y - number(grid->origin[1])) * number(v->inverse_size[1]), n1);                               \
+        int cz = table_wrap((xi.z - number(grid->origin[2])) * number(v->inverse_size[2]), n2);                               \
         int w0 = min(n0, 3), w1 = min(n1, 3), w2 = min(n2, 3);                                                                \
         for (int z = 0; z < w2; z++) {                                                                                        \
             int kz = (cz + z + (w2 == 3 ? n2 - 1 : 0)) % n2;                                                                  \
@@ -119,7 +130,7 @@ INLINE bool table_pairs(const clast_launch *launch, real skin, int i, vec3 xi, r
                     int kx = whole ? cx - 1 : (cx + x + (w0 == 3 ? n0 - 1 : 0)) % n0;                                         \
                     uint end = cell_start[row + kx + (whole ? 3 : 1)];                                                        \
                     for (uint j = cell_start[row + kx]; j < end; j++)                                                         \
-                        if (table_pairs(&launch, skin, i, xi, ri, id_i, j, position, radius, id)) {                           \
+                        if (table_pairs(&launch, skin, i, place, radius_i, id_i, j, position, radius, id)) {                           \
                             TAKE(j);                                                                                          \
                         }                                                                                                     \
                 }                                                                                                             \
@@ -130,7 +141,7 @@ INLINE bool table_pairs(const clast_launch *launch, real skin, int i, vec3 xi, r
 /* Pairs owned by each grain, and slots each grain needs. slot_count must be zero before. The first `room` partners of each grain are `kept`, so
  * that most grains need not be searched for twice. */
 __kernel void table_count(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
-                          __global const real *restrict position, __global const real *restrict radius, __global const int *restrict id,
+                          __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id,
                           __global uint *restrict own_count, __global uint *restrict slot_count, __global int *restrict kept, const int room)
 {
     int i = get_global_id(0);
@@ -138,8 +149,10 @@ __kernel void table_count(const clast_launch launch, __global const clast_grid *
         own_count[i] = 0;
         return;
     }
-    vec3 xi = GRAIN3(position, i);
-    real ri = radius[i], skin = (real)grid->skin;
+    precise3 place = PRECISE_GRAIN3(position, i);
+    precise radius_i = precise_load(radius[i]);
+    vec3 xi = rounded3(place);
+    real ri = rounded(radius_i), skin = number(grid->skin);
     int id_i = id[i];
     uint found = 0;
 #define TABLE_COUNT(j)                                          \
@@ -154,15 +167,17 @@ __kernel void table_count(const clast_launch launch, __global const clast_grid *
 
 /* Writes the pairs of each grain, sorted by the partner's permanent id. */
 __kernel void table_fill(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
-                         __global const real *restrict position, __global const real *restrict radius, __global const int *restrict id,
+                         __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id,
                          __global const uint *restrict own_start, __global int *restrict owner, __global int *restrict other,
                          __global const int *restrict kept, const int room)
 {
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
-    vec3 xi = GRAIN3(position, i);
-    real ri = radius[i], skin = (real)grid->skin;
+    precise3 place = PRECISE_GRAIN3(position, i);
+    precise radius_i = precise_load(radius[i]);
+    vec3 xi = rounded3(place);
+    real ri = rounded(radius_i), skin = number(grid->skin);
     int id_i = id[i];
     uint first = own_start[i], k = first;
 #define TABLE_WRITE(j)                                              \
@@ -294,16 +309,17 @@ __kernel void table_carry(__global const int *restrict match, __global const rea
 }
 
 /* Per chunk of grains the square of the largest displacement since the table was built, relative to the common one. */
-__kernel void table_travel(const clast_launch launch, __global const real *restrict position, __global const real *restrict built_position,
-                           __global double *restrict partial)
+__kernel void table_travel(const clast_launch launch, __global const exact *restrict position, __global const exact *restrict built_position,
+                           __global exact *restrict partial)
 {
     int chunk = get_global_id(0), first = chunk * SCAN_CHUNK, end = min(first + SCAN_CHUNK, launch.particle_count);
     real most = R(0.0);
     for (int i = first; i < end; i++) {
-        vec3 moved = periodic_nearest(&launch, sub(sub(GRAIN3(position, i), GRAIN3(built_position, i)), from3(launch.drift)));
+        precise3 since_built = precise3_sub(PRECISE_GRAIN3(position, i), PRECISE_GRAIN3(built_position, i));
+        vec3 moved = rounded3(periodic_nearest(&launch, precise3_sub(since_built, PRECISE3(launch.drift))));
         most = fmax(most, dot3(moved, moved));
     }
-    partial[chunk] = most;
+    partial[chunk] = precise_store(precise_from(most));
 }
 
 /* Index of every permanent id; -1 (set before) where the grain has left. */

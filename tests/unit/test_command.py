@@ -64,7 +64,6 @@ class Command(unittest.TestCase):
             (["run"], "SCENE.yaml"),
             (["run", "a.yaml"], "--out"),
             (["run", "a.yaml", "b.yaml", "--out", "c.h5"], "`b.yaml`"),
-            (["run", "a.yaml", "--out", "c.h5", "--precision", "mixed"], "not in this version"),
             (["run", "a.yaml", "--out", "c.h5", "--precision", "half"], "`half`"),
             (["run", "a.yaml", "--out", "c", "--sweep", "seed=1,2"], "not in this version"),
             (["run", "a.yaml", "--out", "c.h5", "--set", "seed"], "PATH=VALUE"),

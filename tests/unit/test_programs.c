@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 static const law *const every_law[] = {
+    &law_precision_mixed,
     &law_composition_several,
     &law_periodic_box,
     &law_motion_groups,
@@ -125,7 +126,7 @@ static int files_of(const live_laws *live, const char **files)
 {
     const char *table[LIVE_TABLE_FILES];
     int count = live_files(live, files, 64 - LIVE_TABLE_FILES), tables = live_table_files(live, table);
-    for (int f = 1; f < tables; f++) /* the first, the periodic box, is in both */
+    for (int f = 2; f < tables; f++) /* the first two, precision and periodic box, are in both */
         files[count++] = table[f];
     return count;
 }
@@ -421,7 +422,7 @@ static const shared_place places[] = {
     PLACE(clast_launch, mover_count),
     PLACE(clast_launch, heat_row),
     PLACE(clast_launch, bonding),
-    PLACE(clast_launch, spare),
+    PLACE(clast_launch, mixed),
     SIZE(clast_control),
     PLACE(clast_control, halt_step),
     PLACE(clast_control, reason),

@@ -411,8 +411,7 @@ static const bad_scene bad_scenes[] = {
     {"effects:\n", "effects: 3\nstudy: {answers: [a]}\nguards:\n", "`effects` must be a list"},
     /* choices */
     {"dimensions: 3", "dimensions: 4", "`dimensions` must be one of `2`, `3`; it is `4`"},
-    {"title: base", "precision: mixed", "dir/scene.yaml:1:12: `precision: mixed` is not in this version yet; it has `auto`, `double`"},
-    {"title: base", "precision: float", "`precision` must be one of `auto`, `double`; it is `float`"},
+    {"title: base", "precision: float", "`precision` must be one of `auto`, `double`, `mixed`; it is `float`"},
     {"title: base", "integrator: leapfrog", "`integrator` must be one of `semi_implicit_euler`, `velocity_verlet`; it is `leapfrog`"},
     {"shape: plane, point_m: [0, 0, 0], normal", "shape: cylinder, axis", "a wall needs the key `axis_point_m`"},
     {"shape: plane, point_m: [0, 0, 0], normal: [0, 0, 2]", "shape: cylinder, axis_point_m: [0, 0, 0], axis: [0, 0, 2], radius_m: 0, length_m: 1",

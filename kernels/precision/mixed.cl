@@ -1,0 +1,233 @@
+/* precision: arithmetic in float, and no double anywhere. What takes small increments over many steps, and what the overlap is a small
+ * difference of, is kept as the unevaluated sum of two floats (`precise`, about 48 bits): positions, radii, velocities, spins,
+ * orientations, the places of walls. In memory such a number is 64 bits (`exact`), the size of a double, so that both precisions share
+ * their structs and their layouts. Sums and products of two floats are split without error (Knuth, The Art of Computer Programming 2,
+ * sec. 4.2.2; Dekker 1971). A fused multiply-add gives the error of a product; contracting others must not change what is split, hence the
+ * pragma. */
+#pragma OPENCL FP_CONTRACT OFF
+
+/* Stands for an infinite mass: its square, and its product with a square of a length, are numbers still. */
+#define HEAVY R(1e16)
+/* Of the size of a wall's face: positions in a face are known better than this. */
+#define SEAM R(1e-6)
+
+typedef clast_f64 exact;
+
+typedef struct precise {
+    real hi, lo; /* |lo| is at most half of hi's last place */
+} precise;
+
+typedef struct precise3 {
+    precise x, y, z;
+} precise3;
+
+/* The nearest real of a stored number. */
+INLINE real number(exact stored)
+{
+    return as_float((uint)stored.bits);
+}
+
+INLINE precise precise_load(exact stored)
+{
+    precise r;
+    r.hi = as_float((uint)stored.bits);
+    r.lo = as_float((uint)(stored.bits >> 32));
+    return r;
+}
+
+INLINE exact precise_store(precise a)
+{
+    exact r;
+    r.bits = (ulong)as_uint(a.hi) | ((ulong)as_uint(a.lo) << 32);
+    return r;
+}
+
+INLINE precise precise_from(real a)
+{
+    precise r;
+    r.hi = a;
+    r.lo = R(0.0);
+    return r;
+}
+
+INLINE precise precise_from_int(int a)
+{
+    precise r;
+    r.hi = (real)a;
+    r.lo = (real)(a - (int)r.hi);
+    return r;
+}
+
+INLINE real rounded(precise a)
+{
+    return a.hi;
+}
+
+/* a + b where |a| >= |b|, or a = 0. */
+INLINE precise precise_join(real a, real b)
+{
+    precise r;
+    r.hi = a + b;
+    r.lo = b - (r.hi - a);
+    return r;
+}
+
+/* a + b without error. */
+INLINE precise precise_sum(real a, real b)
+{
+    precise r;
+    r.hi = a + b;
+    real taken = r.hi - a;
+    r.lo = (a - (r.hi - taken)) + (b - taken);
+    return r;
+}
+
+/* a b without error. */
+INLINE precise precise_product(real a, real b)
+{
+    precise r;
+    r.hi = a * b;
+    r.lo = fma(a, b, -r.hi);
+    return r;
+}
+
+INLINE precise precise_add(precise a, precise b)
+{
+    precise s = precise_sum(a.hi, b.hi);
+    return precise_join(s.hi, s.lo + (a.lo + b.lo));
+}
+
+INLINE precise precise_sub(precise a, precise b)
+{
+    precise s = precise_sum(a.hi, -b.hi);
+    return precise_join(s.hi, s.lo + (a.lo - b.lo));
+}
+
+INLINE precise precise_mul(precise a, precise b)
+{
+    precise p = precise_product(a.hi, b.hi);
+    return precise_join(p.hi, fma(a.hi, b.lo, fma(a.lo, b.hi, p.lo)));
+}
+
+/* a + s b */
+INLINE precise precise_add_scaled(precise a, real s, precise b)
+{
+    precise p = precise_product(s, b.hi), t = precise_sum(a.hi, p.hi);
+    return precise_join(t.hi, t.lo + (a.lo + fma(s, b.lo, p.lo)));
+}
+
+/* d - n length, for the whole number n that makes it small */
+INLINE precise precise_image(precise d, real n, precise length)
+{
+    return precise_add_scaled(d, -n, length);
+}
+
+INLINE precise precise_quotient(precise a, precise b)
+{
+    real q = a.hi / b.hi;
+    precise rest = precise_add_scaled(a, -q, b);
+    return precise_join(q, rest.hi / b.hi);
+}
+
+INLINE precise precise_abs(precise a)
+{
+    precise r;
+    bool turned = a.hi < R(0.0);
+    r.hi = turned ? -a.hi : a.hi;
+    r.lo = turned ? -a.lo : a.lo;
+    return r;
+}
+
+INLINE bool precise_less(precise a, precise b)
+{
+    return a.hi < b.hi || (a.hi == b.hi && a.lo < b.lo);
+}
+
+INLINE precise precise_max(precise a, precise b)
+{
+    bool less = precise_less(a, b);
+    precise r;
+    r.hi = less ? b.hi : a.hi;
+    r.lo = less ? b.lo : a.lo;
+    return r;
+}
+
+/* One step of Newton's method on the root of the nearest real. */
+INLINE precise precise_root(precise a)
+{
+    bool some = a.hi > R(0.0);
+    real h = sqrt(some ? a.hi : R(1.0));
+    real rest = fma(-h, h, a.hi) + a.lo;
+    precise r = precise_join(h, rest / (R(2.0) * h));
+    r.hi = some ? r.hi : R(0.0);
+    r.lo = some ? r.lo : R(0.0);
+    return r;
+}
+
+INLINE precise3 precise3_of(precise x, precise y, precise z)
+{
+    precise3 r;
+    r.x = x;
+    r.y = y;
+    r.z = z;
+    return r;
+}
+
+INLINE precise3 precise3_from(vec3 a)
+{
+    return precise3_of(precise_from(a.x), precise_from(a.y), precise_from(a.z));
+}
+
+INLINE vec3 rounded3(precise3 a)
+{
+    return v3(a.x.hi, a.y.hi, a.z.hi);
+}
+
+INLINE precise3 precise3_add(precise3 a, precise3 b)
+{
+    return precise3_of(precise_add(a.x, b.x), precise_add(a.y, b.y), precise_add(a.z, b.z));
+}
+
+INLINE precise3 precise3_sub(precise3 a, precise3 b)
+{
+    return precise3_of(precise_sub(a.x, b.x), precise_sub(a.y, b.y), precise_sub(a.z, b.z));
+}
+
+/* a + s b */
+INLINE precise3 precise3_add_scaled(precise3 a, real s, precise3 b)
+{
+    return precise3_of(precise_add_scaled(a.x, s, b.x), precise_add_scaled(a.y, s, b.y), precise_add_scaled(a.z, s, b.z));
+}
+
+INLINE precise3 precise3_scale(precise s, precise3 a)
+{
+    return precise3_of(precise_mul(s, a.x), precise_mul(s, a.y), precise_mul(s, a.z));
+}
+
+INLINE precise precise3_dot(precise3 a, precise3 b)
+{
+    return precise_add(precise_add(precise_mul(a.x, b.x), precise_mul(a.y, b.y)), precise_mul(a.z, b.z));
+}
+
+INLINE precise3 precise3_cross(precise3 a, precise3 b)
+{
+    return precise3_of(precise_sub(precise_mul(a.y, b.z), precise_mul(a.z, b.y)), precise_sub(precise_mul(a.z, b.x), precise_mul(a.x, b.z)), precise_sub(precise_mul(a.x, b.y), precise_mul(a.y, b.x)));
+}
+
+/* (ri + rj) - |d| as ((ri + rj)^2 - d^2)/((ri + rj) + |d|), the squares and their difference without what float would lose: `distance`
+ * is |d| in float. */
+INLINE real sphere_overlap(precise3 d, real distance, precise radius_i, precise radius_j)
+{
+    precise sum = precise_add(radius_i, radius_j);
+    precise r2 = precise_product(sum.hi, sum.hi), x2 = precise_product(d.x.hi, d.x.hi), y2 = precise_product(d.y.hi, d.y.hi),
+            z2 = precise_product(d.z.hi, d.z.hi);
+    precise xy = precise_sum(x2.hi, y2.hi), xyz = precise_sum(xy.hi, z2.hi);
+    real crossed = fma(sum.hi, sum.lo, -fma(d.x.hi, d.x.lo, fma(d.y.hi, d.y.lo, d.z.hi * d.z.lo)));
+    real small = ((r2.lo - x2.lo) - (y2.lo + z2.lo)) - (xy.lo + xyz.lo);
+    return ((r2.hi - xyz.hi) + fma(R(2.0), crossed, small)) / (sum.hi + distance);
+}
+
+INLINE bool is_number(real a)
+{
+    return ((as_uint(a) >> 23) & 0xff) != 0xff;
+}
