@@ -66,6 +66,8 @@ status heat_create(simulation *sim, failure *why)
         return STATUS_OK;
     uint64_t constants = store_item(sim, FIELD_REAL) * (uint64_t)(live_grain_constant_count(&sim->all) * s->material_count);
     TRY(store_buffer(sim, &h->constants, constants, "constants of materials", why));
+    if (sim->all.law[SLOT_WALL_HEAT] == &law_wall_flux)
+        TRY(store_buffer(sim, &h->areas, 8 * (uint64_t)s->wall_count, "areas of contact of walls", why));
     if (sim->all.law[SLOT_ENVIRONMENT] != &law_environment_profile)
         return STATUS_OK;
     clast_profile profile[2];
@@ -97,6 +99,7 @@ void heat_free(simulation *sim)
     release_rows(sim);
     store_release(sim, &sim->heat.constants, 0);
     store_release(sim, &sim->heat.profile, 0);
+    store_release(sim, &sim->heat.areas, 0);
 }
 
 static status fit_array(simulation *sim, cl_mem *mem, void **host, uint64_t bytes, const char *what, failure *why)
@@ -136,13 +139,17 @@ static clast_environment environment_row(const scene *s, double time)
     return row;
 }
 
-static clast_wall_heat wall_row(const scene *s, int stage, int wall, double time)
+/* Units in which areas of contact are summed: a sum of millions of the largest fits in 63 bits. */
+#define QUANTA 1099511627776.0
+
+static clast_wall_heat wall_row(const simulation *sim, int wall, double time)
 {
     static const clast_i32 kinds[] = {CLAST_WALL_ADIABATIC, CLAST_WALL_TEMPERATURE, CLAST_WALL_FLUX};
-    const wall_heat *heat = scene_wall_heat(s, stage, wall);
+    const wall_heat *heat = scene_wall_heat(sim->scene, sim->stage, wall);
     wall_heat_kind kind = wall_heat_kind_of(heat);
     return (clast_wall_heat){.temperature = kind == WALL_HEAT_TEMPERATURE ? quantity_at(&heat->temperature_k, time) : 0.0,
                              .flux = kind == WALL_HEAT_FLUX ? heat->flux_w : 0.0,
+                             .quantum = QUANTA / (sim->radius_max * sim->radius_max),
                              .kind = kinds[kind],
                              .wall = wall};
 }
@@ -163,7 +170,7 @@ void heat_fill_row(simulation *sim, int row, double time)
         h->environment_rows[row] = environment_row(s, time);
     for (int w = 0, face = 0; h->wall_rows && w < s->wall_count; w++)
         for (int f = 0; f < wall_face_count(&s->wall[w]); f++, face++)
-            h->wall_rows[row * sim->face_count + face] = wall_row(s, sim->stage, w, time);
+            h->wall_rows[row * sim->face_count + face] = wall_row(sim, w, time);
     for (int g = 0; h->group_rows && g < s->group_count; g++)
         h->group_rows[row * s->group_count + g] = group_row(&s->group[g], time + sim->dt);
 }
@@ -192,6 +199,18 @@ status heat_write_rows(simulation *sim, int rows, failure *why)
     if (h->group_rows)
         TRY(store_write(sim, h->groups, 0, sizeof *h->group_rows * (uint64_t)(groups_of(sim) * rows), h->group_rows, why));
     return STATUS_OK;
+}
+
+status heat_sum_areas(simulation *sim, const clast_launch *launch, failure *why)
+{
+    const contact_table *t = &sim->table;
+    cl_kernel kernel = launch_kernel(sim, "heat_areas");
+    if (!kernel)
+        return STATUS_OK;
+    TRY(launch_set(kernel, "heat_areas", why, "Lmmii", launch, sim->control, sim->heat.areas, (cl_int)t->wall_base,
+                   (cl_int)(t->wall_base + t->wall_record_count)));
+    TRY(launch_bind(sim, "heat_areas", 5, why));
+    return launch_run(sim, kernel, "heat_areas", (int64_t)sim->scene->wall_count * CLAST_BLOCK, CLAST_BLOCK, why);
 }
 
 /* ---- stages ---- */

@@ -1,5 +1,6 @@
 /* Kernels of the stage's program, and their arguments: those of the core by name, then what each live law adds, in the order of the slots. */
 #include "laws/fields.h"
+#include "laws/laws.h"
 #include "precision.h"
 #include "program.h"
 #include "simulation.h"
@@ -21,6 +22,7 @@ static const stage_list stage_lists[] = {
     {"pair_stage", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"pair_probe", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"observe_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
+    {"heat_areas", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"heat_conductances", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"limit_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"particle_stage", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
@@ -75,6 +77,7 @@ static cl_mem named_buffer(simulation *sim, const char *name)
                {"environment", sim->heat.environment},
                {"profile", sim->heat.profile},
                {"wall_heat", sim->heat.walls},
+               {"wall_area", sim->heat.areas},
                {"group_heat", sim->heat.groups}};
     for (size_t n = 0; n < sizeof own / sizeof *own; n++)
         if (strcmp(own[n].name, name) == 0)
@@ -130,6 +133,8 @@ static bool has_kernel(const simulation *sim, const char *name)
 {
     if (strcmp(name, "particle_synchronise") == 0)
         return live_keeps_half_steps(&sim->live);
+    if (strcmp(name, "heat_areas") == 0)
+        return sim->live.law[SLOT_WALL_HEAT] == &law_wall_flux;
     if (strncmp(name, "heat_", 5) == 0)
         return sim->live.law[SLOT_TEMPERATURE] != NULL;
     if (strstr(name, "_bond_"))
@@ -151,7 +156,7 @@ status launch_open(simulation *sim, failure *why)
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
-                                        "particle_synchronise", "table_bond_sums", "heat_conductances", "heat_limit", "heat_sums"};
+                                        "particle_synchronise", "table_bond_sums", "heat_conductances", "heat_limit", "heat_sums", "heat_areas"};
     sim->kernel_count = 0;
     for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
         if (!has_kernel(sim, names[n]))

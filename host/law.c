@@ -6,7 +6,8 @@
 #include <string.h>
 
 const law *const laws[] = {&law_hertz,        &law_linear,        &law_mindlin, &law_coulomb_linear, &law_elastic_plastic,
-                           &law_constant_torque, &law_power, &law_adhesion, &law_local_damping, &law_viscous_damping, &law_overlap_area, &law_newton,
+                           &law_constant_torque, &law_power, &law_adhesion, &law_local_damping, &law_viscous_damping, &law_overlap_area,
+                           &law_batchelor_obrien, &law_pipe_network, &law_newton,
                            &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, NULL};
 
 static const struct {

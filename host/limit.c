@@ -12,6 +12,8 @@
 /* Safety of the recommended step against the limit, and the share of a contact that it may take (TM sec. 4). */
 #define SAFETY 0.7
 #define SHARE_OF_CONTACT 0.1
+/* Contacts through which a grain is expected to be heated at once. */
+#define CONTACTS_EXPECTED 12.0
 
 static status live_limit(simulation *sim, double *normal, double *turning, failure *why)
 {
@@ -24,7 +26,7 @@ static status live_limit(simulation *sim, double *normal, double *turning, failu
     TRY(simulation_pose_now(sim, why));
     TRY(launch_pass(records, "limit_records", &launch, why));
     TRY(launch_run(sim, records, "limit_records", t->record_count, CLAST_BLOCK, why));
-    TRY(observe_partial(sim, 2 * chunks + 4, why));
+    TRY(observe_partial(sim, 2 * chunks + 5, why));
     TRY(launch_set(grains, "limit_particles", why, torque ? "Lmmmmmmm" : "Lmmmmmm", &launch, t->slot_offset[t->now], t->slots[t->now],
                    store_find(sim, "force")->mem, store_find(sim, "radius")->mem, store_find(sim, "mass")->mem, sim->partial,
                    torque ? torque->mem : NULL));
@@ -67,7 +69,7 @@ static double expected_weight(const simulation *sim)
 }
 
 typedef struct expected_contact {
-    double overlap, normal, turning, duration;
+    double overlap, normal, turning, duration, heat;
 } expected_contact;
 
 /* The smallest grain on a mean one, or on a wall: the smallest are the stiffest for their mass. */
@@ -76,14 +78,15 @@ static status expect_class(simulation *sim, int a, int party, double speed, doub
     const scene *scene = sim->scene;
     int parties = scene->material_count + scene->wall_count;
     bool wall = party >= scene->material_count;
-    double ri = sim->radius_min, rj = sim->mean_radius, result[4];
+    double ri = sim->radius_min, rj = sim->mean_radius, result[5];
     double mi = 4.0 / 3.0 * M_PI * ri * ri * ri * scene_material(scene, a, &property_density);
     double mj = wall ? 0.0 : 4.0 / 3.0 * M_PI * rj * rj * rj * scene_material(scene, party, &property_density);
     cl_kernel kernel = launch_kernel(sim, "limit_expected");
     TRY(launch_set(kernel, "limit_expected", why, sim->mixed ? "mmiffffff" : "mmidddddd", sim->constants, sim->partial, (cl_int)(a * parties + party), ri, rj, mi, mj, speed, weight));
     TRY(launch_run(sim, kernel, "limit_expected", 1, 1, why));
-    TRY(store_get(sim, sim->partial, FIELD_EXACT, 0, 4, result, why));
-    *out = (expected_contact){result[0], result[1], result[2], result[3]};
+    TRY(store_get(sim, sim->partial, FIELD_EXACT, 0, 5, result, why));
+    double capacity = sim->live.law[SLOT_TEMPERATURE] ? mi * scene_material(scene, a, &property_specific_heat) : 0.0;
+    *out = (expected_contact){result[0], result[1], result[2], result[3], result[4] > 0.0 ? capacity / (CONTACTS_EXPECTED * result[4]) : INFINITY};
     return STATUS_OK;
 }
 
@@ -151,6 +154,7 @@ status limit_find(simulation *sim, step_limit *out, failure *why)
             out->expected_s = fmin(out->expected_s, fmin(e.normal, e.turning));
             note(out, e.normal, "normal, contact to be expected");
             note(out, e.turning, "tangential and rolling, contact to be expected");
+            note(out, e.heat, "conduction of heat, contacts to be expected");
             if (e.duration > 0.0)
                 shortest = fmin(shortest, e.duration);
         }

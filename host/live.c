@@ -108,6 +108,8 @@ static void derive_heat(const scene *scene, live_laws *out)
         out->law[SLOT_SUBSTANCE] = &law_substance_several;
     if (out->law[SLOT_CONDUCTION] && any_wall_heat(scene, WALL_HEAT_TEMPERATURE))
         out->law[SLOT_WALL_HEAT] = &law_wall_temperature;
+    if (out->law[SLOT_CONDUCTION] && any_wall_heat(scene, WALL_HEAT_FLUX))
+        out->law[SLOT_WALL_HEAT] = &law_wall_flux;
     if (out->law[SLOT_CONVECTION] || out->law[SLOT_RADIATION])
         out->law[SLOT_ENVIRONMENT] = profile ? &law_environment_profile : &law_environment_uniform;
     for (int g = 0; g < scene->group_count; g++)
@@ -214,6 +216,8 @@ int live_files(const live_laws *live, const char **files, int max)
         files[count++] = "stage/synchronise.cl";
     if (live->law[SLOT_TEMPERATURE] && count < max)
         files[count++] = "stage/heat.cl";
+    if (live->law[SLOT_WALL_HEAT] == &law_wall_flux && count < max)
+        files[count++] = "stage/heat_areas.cl";
     return count;
 }
 

@@ -127,6 +127,8 @@ static status run_on_records(simulation *sim, const char *name, failure *why)
     cl_kernel kernel = launch_kernel(sim, name);
     TRY(simulation_pose_now(sim, why));
     launch.dt = 0.0;
+    launch.step = -1; /* before any at which a batch has halted */
+    TRY(heat_sum_areas(sim, &launch, why));
     TRY(launch_pass(kernel, name, &launch, why));
     return launch_run(sim, kernel, name, sim->table.record_count, CLAST_BLOCK, why);
 }

@@ -122,11 +122,41 @@ static status check_thermal_groups(reader *r)
     return STATUS_OK;
 }
 
+static double option_of(const effect *live, const char *key)
+{
+    for (int k = 0; k < LAW_OPTIONS_MAX && live->law->options[k].key; k++)
+        if (strcmp(live->law->options[k].key, key) == 0)
+            return live->option[k];
+    return 0.0;
+}
+
+/* The correction of a soft modulus compares Hertz contacts of two moduli. */
+static status check_conduction(reader *r)
+{
+    const scene *s = r->scene;
+    const effect *live = scene_effect(s, -1, SLOT_CONDUCTION), *normal = scene_effect(s, -1, SLOT_NORMAL);
+    if (!live)
+        return STATUS_OK;
+    int node = document_at(r->document, "effects[%d]", (int)(live - s->effect));
+    if (live->law == &law_pipe_network && s->dimensions != 2)
+        return document_fail(r->document, node, r->why, "the conduction law `pipe_network` is for discs; it needs `dimensions: 2`");
+    if (option_of(live, "soft_modulus") == 0.0)
+        return STATUS_OK;
+    if (!normal || normal->law != &law_hertz)
+        return document_fail(r->document, node, r->why, "`soft_modulus` corrects Hertz contacts; it needs {slot: normal, law: hertz}");
+    for (int m = 0; m < s->material_count; m++)
+        if (isnan(scene_material(s, m, &property_real_modulus)))
+            return document_fail(r->document, document_at(r->document, "materials[%d]", m), r->why, "`soft_modulus` needs `%s`, which the material `%s` lacks",
+                                 property_real_modulus.key, s->material[m].name);
+    return STATUS_OK;
+}
+
 status scene_check_heat(reader *r)
 {
     const scene *s = r->scene;
     TRY(check_thermal_groups(r));
     TRY(check_environment(r));
+    TRY(check_conduction(r));
     for (int m = 0; m < s->material_count && scene_has_temperature(s); m++)
         if (isnan(scene_material(s, m, &property_specific_heat)))
             return document_fail(r->document, document_at(r->document, "materials[%d]", m), r->why,

@@ -623,6 +623,7 @@ static status enqueue_batch(simulation *sim, int steps, failure *why)
         launch.heat_row = sim->heat.vary ? s : 0;
         for (int c = 0; c < 3; c++)
             launch.drift[c] = sim->drift_velocity[c] * since;
+        TRY(heat_sum_areas(sim, &launch, why));
         TRY(launch_pass(pair, "pair_stage", &launch, why));
         TRY(launch_pass(particle, "particle_stage", &launch, why));
         TRY(launch_run(sim, pair, "pair_stage", sim->table.record_count, CLAST_BLOCK, why));

@@ -63,7 +63,7 @@ typedef struct step_limit {
 
 /* Tables of heat on the device, and the host's copies of rows that vary from step to step. */
 typedef struct heat_tables {
-    cl_mem constants, profile, environment, walls, groups;
+    cl_mem constants, profile, environment, walls, areas, groups;
     int rows;
     bool vary;
     clast_environment *environment_rows;
@@ -239,6 +239,8 @@ bool heat_varies(const simulation *sim);
 status heat_fit_rows(simulation *sim, int rows, failure *why);
 void heat_fill_row(simulation *sim, int row, double time);
 status heat_write_rows(simulation *sim, int rows, failure *why);
+/* Sums the areas of contact of walls that give heat, for the pair stage of `launch`. */
+status heat_sum_areas(simulation *sim, const clast_launch *launch, failure *why);
 typedef struct heat_sums {
     double content;                     /* sum of m c T, J */
     double lowest, mean, highest;       /* K; NAN where no grain is left */

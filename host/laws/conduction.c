@@ -87,3 +87,60 @@ const law law_overlap_area = {
     .derive = derive_overlap_area,
     .constants = overlap_area_constants,
 };
+
+static void derive_batchelor_obrien(const contact_class *class, const double *option, double *parameter)
+{
+    double overlap, time, sum = resistivity(class, class->material_a);
+    if (class->material_b >= 0)
+        sum += resistivity(class, class->material_b);
+    soften(class, option[0], &overlap, &time);
+    parameter[0] = 4.0 * time * sqrt(overlap) / sum;
+}
+
+const law law_batchelor_obrien = {
+    .name = "batchelor_obrien",
+    .slot = SLOT_CONDUCTION,
+    .doc = "Heat through the circle of a Hertz contact between half-spaces: H = 2 a k, at a wall 4 a k.",
+    .source = "Batchelor and O'Brien (1977), HC Eq. 9-12 with the harmonic mean",
+    .kernel_file = "effect/conduction_record.cl",
+    .more_files = {"effect/conduction_batchelor_obrien.cl"},
+    .options = {SOFT_OPTION},
+    .material_needs = {&property_conductivity},
+    .reads_temperature = true,
+    .pair_fields = {&field_heat},
+    .particle_fields = {&field_heat},
+    .parameters = {"CONDUCTION_STRENGTH"},
+    .derive = derive_batchelor_obrien,
+};
+
+static void derive_pipe_network(const contact_class *class, const double *option, double *parameter)
+{
+    int a = class->material_a, b = class->material_b < 0 ? a : class->material_b;
+    parameter[0] = material_value(class, a, &property_conductivity);
+    parameter[1] = material_value(class, b, &property_conductivity);
+    soften(class, option[1], &parameter[2], &parameter[3]);
+}
+
+static void pipe_network_constants(const double *option, char *text, size_t size)
+{
+    wall_constant(option[0], text, size);
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "#define CONDUCTION_DEPTH R(%.17e)\n", option[2]);
+}
+
+const law law_pipe_network = {
+    .name = "pipe_network",
+    .slot = SLOT_CONDUCTION,
+    .doc = "Heat between discs, in scenes of two dimensions: each has a conductance by the angle under which it sees the contact.",
+    .source = "TM Eq. 36 (Feng et al.)",
+    .kernel_file = "effect/conduction_record.cl",
+    .more_files = {"effect/conduction_pipe_network.cl"},
+    .options = {WALL_OPTION, SOFT_OPTION, {"depth_m", NULL, 0, 1e3, 0, "depth of the discs; 0: the diameter of each"}},
+    .material_needs = {&property_conductivity},
+    .reads_temperature = true,
+    .pair_fields = {&field_heat},
+    .particle_fields = {&field_heat},
+    .parameters = {"CONDUCTION_K_I", "CONDUCTION_K_J", "CONDUCTION_OVERLAP_FACTOR", "CONDUCTION_TIME_FACTOR"},
+    .derive = derive_pipe_network,
+    .constants = pipe_network_constants,
+};

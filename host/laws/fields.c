@@ -24,3 +24,4 @@ const field field_group_heat = {"group_heat", PER_SCENE, FIELD_REAL, 1, FIELD_RE
 const field field_bonded = {"bonded", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, "",
                             "twice the bonds that the contact has had, one less while the last one lives; negative: broken by a strength"};
 const field field_scalar = {"scalar", PER_PARTICLE, FIELD_REAL, 1, FIELD_STATE, "", "a scalar of the grain, such as a concentration"};
+const field field_wall_area = {"wall_area", PER_SCENE, FIELD_INT, 1, FIELD_RESULT, "", "area that touches each wall"};

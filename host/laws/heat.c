@@ -55,6 +55,15 @@ const law law_wall_temperature = {
     .pair_fields = {&field_wall_heat},
 };
 
+const law law_wall_flux = {
+    .name = "flux",
+    .slot = SLOT_WALL_HEAT,
+    .doc = "Walls that give a prescribed flow of heat, shared by area of contact; others have a temperature or are adiabatic.",
+    .source = "",
+    .kernel_file = "effect/wall_heat_flux.cl",
+    .pair_fields = {&field_wall_heat, &field_wall_area},
+};
+
 const law law_environment_uniform = {
     .name = "uniform",
     .slot = SLOT_ENVIRONMENT,

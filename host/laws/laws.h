@@ -9,7 +9,8 @@ extern const law law_bonding_always, law_bonding_at_time, law_bonding_scalar, la
 extern const law law_precision_mixed, law_composition_several, law_periodic_box, law_motion_groups, law_rotation_spin, law_slip_single, law_slip_two,
     law_walls_planes, law_walls_finite, law_walls_round, law_orientation_quaternion, law_semi_implicit_euler, law_velocity_verlet, law_velocity_verlet_spin,
     law_dissipation_tracked, law_ledger_energies;
-extern const law law_overlap_area, law_newton, law_still_gas, law_nusselt, law_stefan_boltzmann, law_volumetric;
+extern const law law_overlap_area, law_batchelor_obrien, law_pipe_network, law_wall_flux, law_newton, law_still_gas, law_nusselt, law_stefan_boltzmann,
+    law_volumetric;
 extern const law law_temperature_grains, law_temperature_pairs, law_substance_several, law_wall_temperature, law_environment_uniform,
     law_environment_profile, law_thermal_groups, law_heat_tally;
 

@@ -194,7 +194,7 @@ __kernel void limit_particles(const clast_launch launch, __global const uint *re
 }
 
 /* The contact to expect between two bodies of a class: that of an impact at `speed`, or under `weight`, whichever is deeper.
- * result: overlap (m), limits of the normal and of the turning modes (s), duration of the impact without damping (s). */
+ * result: overlap (m), limits of the normal and of the turning modes (s), duration of the impact without damping (s), conductance (W/K). */
 #define EXPECTED_BISECTIONS 200
 #define EXPECTED_POINTS 400
 
@@ -261,10 +261,13 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
     real spin_i = R(1.0) / (R(0.4) * c.mass_i * c.radius_i * c.radius_i);
     real spin_both = wall ? spin_i : spin_i + R(1.0) / (R(0.4) * c.mass_j * c.radius_j * c.radius_j);
     real turning = limit_step(R(3.5) * t.stiffness * inverse + spin_both * r.stiffness, R(3.5) * t.damping * inverse + spin_both * r.damping);
+    c.touch = c.overlap;
+    real conductance = wall ? conduction_wall_conductance(&c) : conduction_conductance(&c);
     result[0] = precise_store(precise_from(c.overlap));
     result[1] = precise_store(precise_from(limit_step(a.stiffness * inverse, a.damping * inverse)));
     result[2] = precise_store(precise_from(turning));
     result[3] = precise_store(precise_from(duration));
+    result[4] = precise_store(precise_from(conductance));
 }
 
 /* Guards, per chunk: first grain that is not a number, that moves too far in a step, that has left the domain (sorted indices; -1: none),

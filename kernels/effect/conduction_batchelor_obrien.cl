@@ -1,0 +1,16 @@
+/* conduction: H = 2 a k between two grains, k the harmonic mean, and H = 4 a k at a wall, an isothermal half-space (Batchelor & O'Brien 1977;
+ * HC Eqs. 9-12 with the mean as settled in docs/theory.md); a = sqrt(r* d) is the radius of a Hertz contact.
+ * Reads CONDUCTION_STRENGTH, which holds the conductivities and the factors of the soft modulus. */
+#ifndef CONDUCTION_STRENGTH
+#define CONDUCTION_STRENGTH 0
+#endif
+
+INLINE real conduction_conductance(const contact *c)
+{
+    return c->value[CONDUCTION_STRENGTH] * sqrt(c->radius_eff * c->touch);
+}
+
+INLINE real conduction_wall_conductance(const contact *c)
+{
+    return conduction_conductance(c);
+}
