@@ -14,11 +14,11 @@ CLAST = os.environ["CLAST"]
 SCENE = """
 gravity_m_s2: [0, 0, -9.81]
 effects: [EFFECTS]
-materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3}]
+materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3, conductivity_w_mk: 1, specific_heat_j_kgk: 800}]
 interactions: [{between: default, restitution: 0.5, friction_static: 0.4, friction_dynamic: DYNAMIC, rolling_friction: 0.02,
                  bond_equilibrium_strain: 0.01, bond_exponent: EXPONENT, normal_stiffness_n_m: 1000, tangential_stiffness_n_m: 500}]
 particles:
-  - {name: bed, material: glass, generator: lattice, lattice: simple_cubic, counts: [5, 5, 5], spacing_m: 2.0e-3, radius_m: 1.0e-3}
+  - {name: bed, material: glass, generator: lattice, lattice: simple_cubic, counts: [5, 5, 5], spacing_m: 2.0e-3, radius_m: 1.0e-3, temperature_k: 300}
 WALLS
 stages: [{name: go, until: {steps: 2}, step_s: 1.0e-5}]
 """
@@ -27,7 +27,9 @@ MINDLIN = HERTZ + ", {slot: tangential, law: mindlin}"
 LINEAR = "{slot: normal, law: linear}, {slot: tangential, law: coulomb_linear}"
 ROLLING = ", {slot: rolling, law: elastic_plastic}"
 ADHESION = ", {slot: bond, law: adhesion}"
+CONDUCTION = ", {slot: conduction, law: overlap_area}"
 PLANE = "walls: [{name: floor, shape: plane, point_m: [0, 0, -0.001], normal: [0, 0, 1]}]"
+HOT = "walls: [{name: floor, shape: plane, point_m: [0, 0, -0.001], normal: [0, 0, 1], temperature_k: 400}]"
 BOX = "walls: [{name: box, shape: box, low_m: [-0.001, -0.001, -0.001], high_m: [0.01, 0.01, 0.1]}]"
 PERIODIC = "domain: {low_m: [0, 0, -1], high_m: [0.01, 0.01, 1], periodic: [x, y]}"
 
@@ -77,6 +79,9 @@ class Vectorised(unittest.TestCase):
 
     def test_rolling_and_box_with_two_frictions(self):
         self.check(MINDLIN + ROLLING, BOX, "0.3")
+
+    def test_conduction_and_hot_plane(self):
+        self.check(MINDLIN + ROLLING + CONDUCTION, HOT)
 
     def test_linear_periodic(self):
         self.check(LINEAR, PERIODIC)
