@@ -179,6 +179,7 @@ static status create_buffers(simulation *sim, failure *why)
     }
     TRY(store_buffer(sim, &sim->where, 4 * (uint64_t)sim->stride, "indices of ids", why));
     TRY(store_buffer(sim, &sim->control, sizeof(clast_control), "control words", why));
+    TRY(store_fill(sim, sim->control, sizeof(clast_control), why));
     int width = live_constant_count(&sim->all);
     int64_t constants = (int64_t)width * live_class_count(&sim->all, sim->scene);
     TRY(store_buffer(sim, &sim->constants, store_item(sim, FIELD_REAL) * (uint64_t)constants, "contact constants", why));
