@@ -28,6 +28,13 @@ static const stage_list stage_lists[] = {
     {"particle_stage", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"particle_synchronise", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_limit", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_given", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_links", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_stage", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_error", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_findings", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_accept", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_spectrum", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_sums", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
 };
 
@@ -135,6 +142,8 @@ static bool has_kernel(const simulation *sim, const char *name)
         return live_keeps_half_steps(&sim->live);
     if (strcmp(name, "heat_areas") == 0)
         return sim->live.law[SLOT_WALL_HEAT] == &law_wall_flux;
+    if (strncmp(name, "heat_frozen_", 12) == 0)
+        return sim->live.frozen;
     if (strncmp(name, "heat_", 5) == 0)
         return sim->live.law[SLOT_TEMPERATURE] != NULL;
     if (strstr(name, "_bond_"))
@@ -156,7 +165,9 @@ status launch_open(simulation *sim, failure *why)
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
-                                        "particle_synchronise", "table_bond_sums", "heat_conductances", "heat_limit", "heat_sums", "heat_areas"};
+                                        "particle_synchronise", "table_bond_sums", "heat_conductances", "heat_limit", "heat_sums", "heat_areas",
+                                        "heat_frozen_given", "heat_frozen_links", "heat_frozen_stage", "heat_frozen_error",
+                                        "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_spectrum"};
     sim->kernel_count = 0;
     for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
         if (!has_kernel(sim, names[n]))
@@ -235,25 +246,23 @@ status launch_run(simulation *sim, cl_kernel kernel, const char *name, int64_t i
     return STATUS_OK;
 }
 
-status launch_set(cl_kernel kernel, const char *name, failure *why, const char *types, ...)
+static cl_int set_arguments(cl_kernel kernel, cl_uint first, const char *types, va_list values)
 {
-    va_list values;
     cl_int code = CL_SUCCESS;
-    va_start(values, types);
-    for (cl_uint a = 0; types[a] && code == CL_SUCCESS; a++) {
-        if (types[a] == 'm') {
+    for (cl_uint a = first; *types && code == CL_SUCCESS; a++, types++) {
+        if (*types == 'm') {
             cl_mem mem = va_arg(values, cl_mem);
             code = clSetKernelArg(kernel, a, sizeof mem, &mem);
-        } else if (types[a] == 'i') {
+        } else if (*types == 'i') {
             cl_int number = va_arg(values, cl_int);
             code = clSetKernelArg(kernel, a, sizeof number, &number);
-        } else if (types[a] == 'l') {
+        } else if (*types == 'l') {
             clast_i64 number = va_arg(values, clast_i64);
             code = clSetKernelArg(kernel, a, sizeof number, &number);
-        } else if (types[a] == 'd') {
+        } else if (*types == 'd') {
             double number = va_arg(values, double);
             code = clSetKernelArg(kernel, a, sizeof number, &number);
-        } else if (types[a] == 'f') {
+        } else if (*types == 'f') {
             float number = (float)va_arg(values, double);
             code = clSetKernelArg(kernel, a, sizeof number, &number);
         } else {
@@ -263,6 +272,24 @@ status launch_set(cl_kernel kernel, const char *name, failure *why, const char *
             code = clSetKernelArg(kernel, a, sizeof launch, &launch);
         }
     }
+    return code;
+}
+
+status launch_set(cl_kernel kernel, const char *name, failure *why, const char *types, ...)
+{
+    va_list values;
+    va_start(values, types);
+    cl_int code = set_arguments(kernel, 0, types, values);
+    va_end(values);
+    TRY_CL(code, name);
+    return STATUS_OK;
+}
+
+status launch_set_from(cl_kernel kernel, const char *name, cl_uint first, failure *why, const char *types, ...)
+{
+    va_list values;
+    va_start(values, types);
+    cl_int code = set_arguments(kernel, first, types, values);
     va_end(values);
     TRY_CL(code, name);
     return STATUS_OK;

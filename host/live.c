@@ -161,6 +161,7 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
 void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, live_laws *out)
 {
     *out = *all;
+    out->frozen = stage >= 0 && scene->stage[stage].frozen;
     for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
         if (slot_is_listed(slot) && !scene_effect(scene, stage, slot))
             out->law[slot] = NULL;
@@ -218,6 +219,8 @@ int live_files(const live_laws *live, const char **files, int max)
         files[count++] = "stage/heat.cl";
     if (live->law[SLOT_WALL_HEAT] == &law_wall_flux && count < max)
         files[count++] = "stage/heat_areas.cl";
+    if (live->frozen && count < max)
+        files[count++] = "stage/frozen.cl";
     return count;
 }
 

@@ -133,6 +133,11 @@ static status run_on_records(simulation *sim, const char *name, failure *why)
     return launch_run(sim, kernel, name, sim->table.record_count, CLAST_BLOCK, why);
 }
 
+status observe_flows(simulation *sim, failure *why)
+{
+    return run_on_records(sim, "pair_probe", why);
+}
+
 status observe_contact_sums(simulation *sim, contact_sums *out, failure *why)
 {
     double *ratio = NULL, *energy = NULL;

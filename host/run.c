@@ -1,5 +1,6 @@
 #include "run.h"
 
+#include "frozen.h"
 #include "output.h"
 #include "schedule.h"
 
@@ -275,11 +276,23 @@ static status refuse_step(const run *r, const scene_stage *stage, const step_lim
                 r->scene->path, stage->at.line, stage->at.column, stage->name, stage->step_s, limit->limit_s, limit->binds, limit->recommended_s);
 }
 
+static status begin_frozen_stage(run *r, const scene_stage *stage, failure *why)
+{
+    double limit;
+    TRY(frozen_limit(r->sim, &limit, why));
+    tell(r, "stage %s: motion is frozen; heat by the %s method, tolerance %.3g of the temperature range; limit of Euler's method %.4g s", stage->name,
+         frozen_method_name(stage->heat_method), stage->heat_tolerance, limit);
+    schedule_begin_stage(&r->schedule, r->sim, isfinite(limit) ? limit : 1.0);
+    return STATUS_OK;
+}
+
 static status begin_stage(run *r, int index, failure *why)
 {
     const scene_stage *stage = &r->scene->stage[index];
     step_limit limit;
     TRY(simulation_begin_stage(r->sim, index, why));
+    if (stage->frozen)
+        return begin_frozen_stage(r, stage, why);
     TRY(limit_find(r->sim, &limit, why));
     if (!isnan(stage->step_s) && stage->step_s > limit.limit_s && !stage->allow_unstable_step)
         return refuse_step(r, stage, &limit, why);
@@ -296,6 +309,32 @@ static status interrupt(run *r, failure *why)
 {
     TRY(write_checkpoint(r, why));
     return fail(why, STATUS_INTERRUPTED, "interrupted at t = %.9g s; go on with: clast resume %s", r->sim->time, r->checkpoint_path);
+}
+
+/* Writes what is due at the present step. */
+static status write_due(run *r, failure *why)
+{
+    due now = schedule_due(&r->schedule, r->sim);
+    if (r->schedule.automatic && (now.frame || now.observation))
+        schedule_adapt(&r->schedule, r->sim, r->schedule.recommended_s);
+    if (now.observation || now.frame || now.stage_end)
+        TRY(output_observe(r->output, why));
+    if (now.frame || now.stage_end)
+        TRY(output_frame(r->output, why));
+    return now.checkpoint ? write_checkpoint(r, why) : STATUS_OK;
+}
+
+/* Steps end on what is due. */
+static status run_frozen_stage(run *r, failure *why)
+{
+    while (!schedule_stage_over(&r->schedule, r->sim)) {
+        TRY(frozen_advance(r->sim, schedule_next_time(&r->schedule, r->sim), 1, why));
+        show_progress(r);
+        TRY(write_due(r, why));
+        if (interrupted)
+            return interrupt(r, why);
+    }
+    return STATUS_OK;
 }
 
 /* A signal is heard after the steps of a chunk, or once all that is due at a step is done: a checkpoint leaves nothing of its step to do. */
@@ -316,15 +355,7 @@ static status run_stage(run *r, failure *why)
                 return interrupt(r, why);
         }
         TRY(looks(r, why));
-        due now = schedule_due(&r->schedule, r->sim);
-        if (r->schedule.automatic && (now.frame || now.observation))
-            schedule_adapt(&r->schedule, r->sim, r->schedule.recommended_s);
-        if (now.observation || now.frame || now.stage_end)
-            TRY(output_observe(r->output, why));
-        if (now.frame || now.stage_end)
-            TRY(output_frame(r->output, why));
-        if (now.checkpoint)
-            TRY(write_checkpoint(r, why));
+        TRY(write_due(r, why));
         if (interrupted)
             return interrupt(r, why);
     }
@@ -337,7 +368,7 @@ static status run_stages(run *r, int first, bool resumed, failure *why)
     for (int s = first; s < r->scene->stage_count; s++) {
         if (s > 0 && !(resumed && s == first))
             TRY(begin_stage(r, s, why));
-        TRY(run_stage(r, why));
+        TRY(r->scene->stage[s].frozen ? run_frozen_stage(r, why) : run_stage(r, why));
     }
     return STATUS_OK;
 }

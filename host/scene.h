@@ -177,13 +177,20 @@ typedef struct group_change {
     motion_list motion;
 } group_change;
 
+/* How heat advances while nothing moves. */
+typedef enum heat_method { HEAT_STABILISED, HEAT_EXPLICIT } heat_method;
+
 typedef struct scene_stage {
     char *name;
     double until_time_s;    /* NAN: not given */
     int64_t until_steps;    /* -1 */
     double until_rest;      /* NAN */
     double until_rest_j;    /* NAN */
+    double until_steady_k_s; /* NAN */
     double step_s;          /* NAN: auto */
+    bool frozen;            /* nothing moves */
+    heat_method heat_method;
+    double heat_tolerance;  /* of the temperature range, a step */
     bool allow_unstable_step;
     bool gravity_given;
     double gravity_m_s2[3];

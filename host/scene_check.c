@@ -196,6 +196,7 @@ static status check_stages(reader *r)
         if (!isnan(s->stage[t].until_rest) && g[0] == 0.0 && g[1] == 0.0 && g[2] == 0.0)
             return document_fail(r->document, document_at(r->document, "stages[%d].until.rest", t), r->why,
                                  "`rest` compares with m g r, and this stage has no gravity; use `rest_j` with a limit in joules");
+        TRY(check_frozen_stage(r, t));
     }
     return STATUS_OK;
 }

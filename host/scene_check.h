@@ -4,6 +4,7 @@
 #include "parameter.h"
 
 status scene_check(reader *r);
+status check_frozen_stage(reader *r, int stage);
 status scene_check_heat(reader *r);
 status check_wall_heat(reader *r, int node, const wall_heat *heat);
 

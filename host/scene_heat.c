@@ -102,6 +102,29 @@ static status check_environment(reader *r)
     return STATUS_OK;
 }
 
+/* What a stage with frozen motion needs, and what only such a stage may ask for. */
+status check_frozen_stage(reader *r, int t)
+{
+    const scene *s = r->scene;
+    const scene_stage *stage = &s->stage[t];
+    int node = document_at(r->document, "stages[%d]", t);
+    if (!stage->frozen && !isnan(stage->until_steady_k_s))
+        return document_fail(r->document, document_at(r->document, "stages[%d].until.steady_k_s", t), r->why,
+                             "`steady_k_s` ends stages with `motion: frozen` only; use `time_s` here");
+    if (!stage->frozen)
+        return STATUS_OK;
+    if (!scene_has_heat(s))
+        return document_fail(r->document, node, r->why,
+                             "`motion: frozen` leaves only heat to advance, and no law of heat is listed under `effects`; add one, like "
+                             "{slot: conduction, law: overlap_area}");
+    if (!isnan(stage->until_rest) || !isnan(stage->until_rest_j))
+        return document_fail(r->document, node, r->why, "nothing moves in a stage with `motion: frozen`; end it by `time_s`, `steps` or `steady_k_s`");
+    if (!isnan(stage->step_s))
+        return document_fail(r->document, document_at(r->document, "stages[%d].step_s", t), r->why,
+                             "the steps of a stage with `motion: frozen` follow from `heat: {tolerance: ...}`; leave `step_s` out");
+    return STATUS_OK;
+}
+
 static status check_thermal_groups(reader *r)
 {
     const scene *s = r->scene;

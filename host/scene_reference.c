@@ -182,6 +182,7 @@ static void write_page(FILE *page)
     write_section(page, "`motion`", &motion_section);
     write_section(page, "`stages`", &stage_section);
     write_section(page, "`until`", &until_section);
+    write_section(page, "`heat` of a stage", &stage_heat_section);
     write_section(page, "`change`", &change_section);
     write_section(page, "`walls` of a change", &wall_change_section);
     write_section(page, "`particles` of a change", &group_change_section);

@@ -264,7 +264,8 @@ static const parameter until_rows[] = {
      .doc = "translational kinetic energy below this fraction of the sum of m g r at 100 successive checks, 100 steps apart"},
     {.key = "rest_j", .type = PARAMETER_NUMBER, .unit = "J", POSITIVE, AT(scene_stage, until_rest_j),
      .doc = "the same with a limit in joules, for scenes without gravity"},
-    {.key = "steady_k_s", .type = PARAMETER_LATER, .doc = "an end by temperature rate, which needs heat"},
+    {.key = "steady_k_s", .type = PARAMETER_NUMBER, .unit = "K/s", POSITIVE, AT(scene_stage, until_steady_k_s),
+     .doc = "no temperature changes faster than this; in stages with `motion: frozen`"},
     {0},
 };
 const section until_section = {.name = "stage end (`until`)", .doc = "When a stage ends; with several keys the first one met ends it.",
@@ -314,6 +315,17 @@ static const parameter change_rows[] = {
 const section change_section = {.name = "stage change", .doc = "What changes at the start of a stage; it stays so in later stages.",
                                 .row = change_rows};
 
+static const parameter stage_heat_rows[] = {
+    {.key = "method", .type = PARAMETER_CHOICE, .choices = "stabilised|explicit", .later = "implicit|steady", .fallback = "stabilised",
+     AT(scene_stage, heat_method), .doc = "how temperatures advance while nothing moves: `stabilised` takes steps of RKL2 with error control, "
+     "`explicit` steps of Euler's method at the thermal limit"},
+    {.key = "tolerance", .type = PARAMETER_NUMBER, .low = 1e-12, .high = 0.1, .fallback = "1e-6", AT(scene_stage, heat_tolerance),
+     .doc = "error of a step, as a share of the range of temperatures (initial, walls, environment and prescribed ones)"},
+    {.key = "every_steps", .type = PARAMETER_LATER, .doc = "heat advanced every n-th mechanical step"},
+    {0},
+};
+const section stage_heat_section = {.name = "heat of a stage", .doc = "How heat advances in a stage with `motion: frozen`.", .row = stage_heat_rows};
+
 static const parameter stage_rows[] = {
     {.key = "name", .type = PARAMETER_NAME, .shown = "stage1, stage2, ...", AT(scene_stage, name), .doc = "name of the stage"},
     {.key = "until", .type = PARAMETER_SECTION, .section = &until_section, .required = true,
@@ -322,6 +334,9 @@ static const parameter stage_rows[] = {
      .doc = "time step"},
     {.key = "allow_unstable_step", .type = PARAMETER_FLAG, .fallback = "false", AT(scene_stage, allow_unstable_step),
      .doc = "run even with a step beyond the stability limit"},
+    {.key = "motion", .type = PARAMETER_CHOICE, .choices = "free|frozen", .fallback = "free", AT(scene_stage, frozen), .as_flag = true,
+     .doc = "`frozen`: nothing moves and only temperatures change, with steps of their own; velocities are kept for later stages"},
+    {.key = "heat", .type = PARAMETER_SECTION, .section = &stage_heat_section, .doc = "how heat advances while motion is frozen"},
     {.key = "change", .type = PARAMETER_SECTION, .section = &change_section, .doc = "what changes at the start of the stage"},
     {.key = "effects_off", .type = PARAMETER_OTHER, .read = read_effects_off, .shown = "[]", .form = "list of slots",
      .doc = "slots whose law is switched off during this stage"},

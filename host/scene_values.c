@@ -464,7 +464,8 @@ status finish_region(reader *r, int node, void *target)
 status finish_until(reader *r, int node, void *target)
 {
     const scene_stage *stage = target;
-    if (isnan(stage->until_time_s) && stage->until_steps < 0 && isnan(stage->until_rest) && isnan(stage->until_rest_j))
-        return document_fail(r->document, node, r->why, "`until` needs at least one of `time_s`, `steps`, `rest` and `rest_j`");
+    if (isnan(stage->until_time_s) && stage->until_steps < 0 && isnan(stage->until_rest) && isnan(stage->until_rest_j) &&
+        isnan(stage->until_steady_k_s))
+        return document_fail(r->document, node, r->why, "`until` needs at least one of `time_s`, `steps`, `rest`, `rest_j` and `steady_k_s`");
     return STATUS_OK;
 }

@@ -25,8 +25,7 @@ static double stage_end_time(const schedule *s, const simulation *sim)
     return s->stage_start + stage_of(s, sim)->until_time_s; /* NAN where time does not end it */
 }
 
-/* The next time at which something is due; infinite where nothing is. */
-static double next_time(const schedule *s, const simulation *sim)
+double schedule_next_time(const schedule *s, const simulation *sim)
 {
     double next = INFINITY;
     const double times[] = {s->next_frame * s->scene->output.every_s, s->next_observation * observation_interval(s),
@@ -48,7 +47,7 @@ static double unbound_step(const schedule *s, const simulation *sim)
 void schedule_adapt(schedule *s, simulation *sim, double recommended_s)
 {
     s->recommended_s = isfinite(recommended_s) ? recommended_s : unbound_step(s, sim);
-    double left = next_time(s, sim) - sim->time, dt = s->recommended_s;
+    double left = schedule_next_time(s, sim) - sim->time, dt = s->recommended_s;
     if (isfinite(left) && left > 0.0)
         dt = left / fmax(1.0, ceil(left / dt - SAME));
     simulation_set_step(sim, dt);
@@ -59,8 +58,10 @@ void schedule_begin_stage(schedule *s, simulation *sim, double recommended_s)
     const scene_stage *stage = stage_of(s, sim);
     s->stage_start = sim->time;
     s->rest_checks = 0;
-    s->automatic = isnan(stage->step_s);
-    if (s->automatic)
+    s->automatic = isnan(stage->step_s) && !stage->frozen;
+    if (stage->frozen)
+        simulation_set_step(sim, recommended_s);
+    else if (s->automatic)
         schedule_adapt(s, sim, recommended_s);
     else
         simulation_set_step(sim, stage->step_s);
@@ -109,17 +110,20 @@ int64_t schedule_steps(schedule *s, simulation *sim)
     return steps < 1 ? 1 : least(steps, 100000);
 }
 
-/* True once the present time is the nearest to, or past, the given multiple. */
+/* True once the present time is the nearest to, or past, the given multiple. Frozen stages end their steps on what is due. */
 static bool reached(const simulation *sim, double time)
 {
-    return !isnan(time) && sim->time >= time - 0.5 * sim->dt * (1.0 + SAME);
+    double early = sim->scene->stage[sim->stage].frozen ? 0.0 : 0.5 * sim->dt * (1.0 + SAME);
+    return !isnan(time) && sim->time >= time - early;
 }
 
 bool schedule_stage_over(const schedule *s, const simulation *sim)
 {
     const scene_stage *stage = stage_of(s, sim);
     double end = stage_end_time(s, sim);
-    return (!isnan(end) && sim->time >= end - SAME * sim->dt) || (stage->until_steps >= 0 && sim->stage_steps >= stage->until_steps) ||
+    double early = stage->frozen ? 0.0 : SAME * sim->dt;
+    bool steady = !isnan(stage->until_steady_k_s) && sim->stage_steps > 0 && sim->frozen.rate < stage->until_steady_k_s;
+    return steady || (!isnan(end) && sim->time >= end - early) || (stage->until_steps >= 0 && sim->stage_steps >= stage->until_steps) ||
            s->rest_checks >= REST_CHECKS;
 }
 

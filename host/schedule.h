@@ -29,6 +29,8 @@ void schedule_begin_stage(schedule *s, simulation *sim, double recommended_s);
 void schedule_adapt(schedule *s, simulation *sim, double recommended_s);
 /* Steps until something is due or must be looked at; sets sim->dt for them. At least 1. */
 int64_t schedule_steps(schedule *s, simulation *sim);
+/* The next time at which something is due; infinite where nothing is. */
+double schedule_next_time(const schedule *s, const simulation *sim);
 /* True from the end of the stage on: no step of it is left. */
 bool schedule_stage_over(const schedule *s, const simulation *sim);
 /* What is due now, at the present step and time; moves on to the next. */

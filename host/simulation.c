@@ -1,6 +1,7 @@
 #include "simulation.h"
 
 #include "bond_figures.h"
+#include "frozen.h"
 #include "laws/fields.h"
 #include "precision.h"
 #include "property.h"
@@ -229,6 +230,7 @@ void simulation_free(simulation *sim)
     launch_close(sim);
     table_free(sim);
     heat_free(sim);
+    frozen_free(sim);
     for (int f = 0; f < sim->field_count; f++)
         store_release(sim, &sim->field[f].mem, 0);
     cl_mem *const rest[] = {&sim->where, &sim->partial, &sim->control, &sim->faces, &sim->movers, &sim->constants, &sim->built_position, &sim->scratch4,
@@ -483,7 +485,7 @@ status simulation_enter_stage(simulation *sim, int stage, failure *why)
 {
     const live_laws before = sim->live;
     live_laws_in_stage(sim->scene, &sim->all, stage, &sim->live);
-    bool same = sim->program && memcmp(before.law, sim->live.law, sizeof before.law) == 0;
+    bool same = sim->program && memcmp(before.law, sim->live.law, sizeof before.law) == 0 && before.frozen == sim->live.frozen;
     sim->stage = stage;
     scene_gravity(sim->scene, stage, sim->gravity);
     if (!sim->live.law[SLOT_BOND])
@@ -496,6 +498,7 @@ status simulation_enter_stage(simulation *sim, int stage, failure *why)
     note_movers(sim);
     TRY(upload_constants(sim, stage, why));
     TRY(heat_upload_constants(sim, stage, why));
+    frozen_forget(sim);
     TRY(simulation_pose_now(sim, why));
     return table_build(sim, false, why);
 }
@@ -525,6 +528,7 @@ static status begin_half_steps(simulation *sim, failure *why)
 status simulation_begin_stage(simulation *sim, int stage, failure *why)
 {
     sim->stage_steps = 0;
+    frozen_restart(sim);
     TRY(end_half_steps(sim, why));
     change_bodies(sim, &sim->scene->stage[stage]);
     TRY(upload_movers(sim, why));

@@ -71,6 +71,18 @@ typedef struct heat_tables {
     clast_group_heat *group_rows;
 } heat_tables;
 
+/* A stage in which nothing moves (frozen.c): the links of the contact network, and how its steps go. */
+typedef struct frozen_heat {
+    bool linked;           /* the arrays hold the network as it stands */
+    cl_mem link, conductance, given, start, zero, error, rates, kept, rises[3];
+    uint64_t link_bytes, grain_bytes;
+    double low, high;      /* temperatures that none leaves without being heated; NAN: not yet known */
+    double next;           /* step to try, s; NAN: none yet */
+    double rate;           /* largest rate of change at the last step, K/s; infinite before it */
+    double limit, hottest; /* limit of Euler's method, s, for surfaces up to this temperature; NAN: not yet known */
+    int64_t rejected;
+} frozen_heat;
+
 typedef struct simulation {
     const scene *scene;
     device *device;
@@ -102,6 +114,7 @@ typedef struct simulation {
     int batch_rows;          /* rows allocated */
     uint64_t face_bytes, mover_bytes;
     heat_tables heat;
+    frozen_heat frozen;
     int32_t *group_of_id;
     bool *group_held;        /* by group: held or moved as prescribed, now */
     int64_t batch_limit;     /* steps a batch, now */
@@ -182,6 +195,8 @@ status launch_run(simulation *sim, cl_kernel kernel, const char *name, int64_t i
 /* Sets arguments first.. in order: 'm' cl_mem, 'i' int, 'l' clast_i64, 'f' double as float,
  * 'd' double, 'L' const clast_launch *. */
 status launch_set(cl_kernel kernel, const char *name, failure *why, const char *types, ...);
+/* The same from argument `first` on. */
+status launch_set_from(cl_kernel kernel, const char *name, cl_uint first, failure *why, const char *types, ...);
 
 /* table.c */
 status table_create(simulation *sim, failure *why);
@@ -219,6 +234,8 @@ status observe_stored_sums(simulation *sim, particle_sums *out, failure *why);
 /* Velocities and spins (NULL without) at the time of the positions, in arrays of the device. */
 status observe_velocities(simulation *sim, cl_mem *velocity, cl_mem *spin, failure *why);
 status observe_contact_sums(simulation *sim, contact_sums *out, failure *why);
+/* Leaves in the records the forces and flows as they stand. */
+status observe_flows(simulation *sim, failure *why);
 /* Live contacts in the order of ids; forces as they stand. walls_only leaves the pairs out. Caller frees. */
 status observe_contacts(simulation *sim, bool walls_only, live_contact **out, int64_t *count, failure *why);
 /* Sum of the contacts' forces (or torques) on every grain, [id_count][3]; NAN where the grain has left. Caller frees. */

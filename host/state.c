@@ -1,5 +1,6 @@
 /* The state of a run in permanent-id order: what a checkpoint holds, and what the last good state is kept as. Where the table was built does
  * not matter for the bits, so it is built anew on loading; the histories of live contacts come along by the ids of the partners. */
+#include "frozen.h"
 #include "simulation.h"
 
 #include <math.h>
@@ -120,6 +121,10 @@ status state_save(simulation *sim, bundle *out, failure *why)
     bundle_add_f64(out, "run/dt", sim->dt);
     if (live_keeps_half_steps(&sim->all))
         bundle_add_f64(out, "run/lag", sim->lag);
+    if (sim->live.frozen) {
+        const double progress[5] = {sim->frozen.low, sim->frozen.high, sim->frozen.next, sim->frozen.rate, sim->frozen.hottest};
+        bundle_add(out, "run/frozen", BUNDLE_F64, 5, 1, progress);
+    }
     bundle_add_f64(out, "run/skin", sim->table.skin);
     bundle_add_i64(out, "run/left_count", sim->left_count);
     bundle_add_f64(out, "run/left_mass", sim->left_mass);
@@ -295,6 +300,21 @@ static status load_histories(simulation *sim, const bundle *in, const char *path
     return result;
 }
 
+/* How the steps of a stage in which nothing moves were going. */
+static status load_frozen(simulation *sim, const bundle *in, const char *path, failure *why)
+{
+    const bundle_entry *entry;
+    TRY(bundle_get(in, path, "run/frozen", BUNDLE_F64, 5, 1, &entry, why));
+    const double *progress = entry->data;
+    frozen_restart(sim);
+    sim->frozen.low = progress[0];
+    sim->frozen.high = progress[1];
+    sim->frozen.next = progress[2];
+    sim->frozen.rate = progress[3];
+    sim->frozen.hottest = progress[4];
+    return STATUS_OK;
+}
+
 static status load_run(simulation *sim, const bundle *in, const char *path, int64_t *stage, failure *why)
 {
     const bundle_entry *origin;
@@ -328,6 +348,8 @@ static status load_run(simulation *sim, const bundle *in, const char *path, int6
     if (*stage < 0 || *stage >= sim->scene->stage_count)
         return fail(why, STATUS_BAD_INPUT, "%s: run/stage is %lld, the scene has %d stages; the checkpoint is of another scene", path, (long long)*stage,
                     sim->scene->stage_count);
+    if (sim->scene->stage[*stage].frozen)
+        TRY(load_frozen(sim, in, path, why));
     return STATUS_OK;
 }
 

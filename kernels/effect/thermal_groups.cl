@@ -6,6 +6,13 @@
 #define THERMAL_GROUP_ROW(launch) (group_heat + (launch)->heat_row * THERMAL_GROUPS)
 #define THERMAL_GROUP_HEAT(launch, i) thermal_group_heat(THERMAL_GROUP_ROW(launch), thermal_group[i])
 #define THERMAL_GROUP_TEMPERATURE(launch, i, t) thermal_group_temperature(THERMAL_GROUP_ROW(launch), thermal_group[i], t)
+/* True where the temperature is prescribed. */
+#define THERMAL_GROUP_HOLDS(launch, i) thermal_group_holds(THERMAL_GROUP_ROW(launch), thermal_group[i])
+
+INLINE bool thermal_group_holds(__global const clast_group_heat *row, int group)
+{
+    return group >= 0 && row[group].prescribed;
+}
 
 /* W */
 INLINE real thermal_group_heat(__global const clast_group_heat *row, int group)

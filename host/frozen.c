@@ -1,0 +1,466 @@
+/* Heat while nothing moves (docs/theory.md, "Heat while nothing moves"). The kernels are kernels/stage/frozen.cl. */
+#include "frozen.h"
+
+#include "laws/laws.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CHUNK 256
+#define FINDINGS 4
+/* Stages of a step at most: rows of tables are kept for each. */
+#define STAGES_MAX 255
+#define ROWS (STAGES_MAX + 1)
+/* Share of the step that the number of stages allows for by the bound of the spectrum. */
+#define STABLE_SHARE 0.95
+#define EULER_SHARE 0.9
+
+const char *frozen_method_name(heat_method method)
+{
+    static const char *const names[] = {"stabilised", "explicit"};
+    return names[method];
+}
+
+static const scene_stage *stage_of(const simulation *sim)
+{
+    return &sim->scene->stage[sim->stage];
+}
+
+/* ---- the network ---- */
+
+void frozen_forget(simulation *sim)
+{
+    sim->frozen.linked = false;
+}
+
+void frozen_restart(simulation *sim)
+{
+    frozen_heat *f = &sim->frozen;
+    f->linked = false;
+    f->low = f->high = f->next = f->limit = f->hottest = NAN;
+    f->rate = INFINITY;
+}
+
+static void release_arrays(simulation *sim)
+{
+    frozen_heat *f = &sim->frozen;
+    cl_mem *const grains[] = {&f->given, &f->start, &f->zero, &f->error, &f->rates, &f->rises[0], &f->rises[1], &f->rises[2]};
+    store_release(sim, &f->link, f->link_bytes);
+    store_release(sim, &f->conductance, f->link_bytes);
+    for (size_t k = 0; k < sizeof grains / sizeof *grains; k++)
+        store_release(sim, grains[k], f->grain_bytes);
+    store_release(sim, &f->kept, 5 * f->grain_bytes);
+    f->link_bytes = f->grain_bytes = 0;
+}
+
+void frozen_free(simulation *sim)
+{
+    release_arrays(sim);
+}
+
+static status fit_arrays(simulation *sim, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    uint64_t links = 8 * (uint64_t)sim->table.slots_held[sim->table.now], grains = 8 * (uint64_t)sim->stride;
+    if (f->link && f->link_bytes >= links)
+        return STATUS_OK;
+    release_arrays(sim);
+    f->link_bytes = links > 0 ? links : 8;
+    f->grain_bytes = grains;
+    TRY(store_buffer(sim, &f->link, f->link_bytes, "links of the contact network", why));
+    TRY(store_buffer(sim, &f->conductance, f->link_bytes, "conductances", why));
+    cl_mem *const arrays[] = {&f->given, &f->start, &f->zero, &f->error, &f->rates, &f->rises[0], &f->rises[1], &f->rises[2]};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        TRY(store_buffer(sim, arrays[k], grains, "steps of heat", why));
+    if (sim->all.law[SLOT_HEAT_TALLY])
+        TRY(store_buffer(sim, &f->kept, 5 * grains, "heat by path of a step", why));
+    return store_fill(sim, f->zero, grains, why);
+}
+
+static status run_grains(simulation *sim, const char *name, int bound, failure *why)
+{
+    TRY(launch_bind(sim, name, bound, why));
+    return launch_run(sim, launch_kernel(sim, name), name, sim->count, CLAST_BLOCK, why);
+}
+
+/* Heat of walls that give a prescribed flow, from the records' flows as they stand. */
+static status find_given(simulation *sim, failure *why)
+{
+    clast_launch launch = launch_values(sim);
+    contact_table *t = &sim->table;
+    cl_kernel given = launch_kernel(sim, "heat_frozen_given");
+    TRY(store_fill(sim, sim->frozen.given, sim->frozen.grain_bytes, why));
+    if (!sim->live.law[SLOT_WALL_HEAT])
+        return STATUS_OK;
+    TRY(observe_flows(sim, why));
+    TRY(launch_set(given, "heat_frozen_given", why, "Lmmm", &launch, t->other[t->now], sim->heat.walls, sim->frozen.given));
+    return run_grains(sim, "heat_frozen_given", 4, why);
+}
+
+static status find_links(simulation *sim, failure *why)
+{
+    clast_launch launch = launch_values(sim);
+    contact_table *t = &sim->table;
+    frozen_heat *f = &sim->frozen;
+    cl_kernel records = launch_kernel(sim, "heat_conductances"), links = launch_kernel(sim, "heat_frozen_links");
+    TRY(launch_pass(records, "heat_conductances", &launch, why));
+    TRY(launch_bind(sim, "heat_conductances", 1, why));
+    TRY(launch_run(sim, records, "heat_conductances", t->record_count, CLAST_BLOCK, why));
+    TRY(launch_set(links, "heat_frozen_links", why, "Lmmmm", &launch, t->owner[t->now], t->other[t->now], f->link, f->conductance));
+    return run_grains(sim, "heat_frozen_links", 5, why);
+}
+
+/* One evaluation of the pairs gives all that the contacts do while nothing moves. */
+static status link_contacts(simulation *sim, failure *why)
+{
+    if (sim->frozen.linked)
+        return STATUS_OK;
+    if (sim->walls_move || sim->groups_move)
+        return fail(why, STATUS_BAD_INPUT,
+                    "%s: stage %s: motion is frozen, but a wall or a group of particles has a prescribed motion; stop it by `change` (motion: [] of a wall, "
+                    "motion: fixed of particles)",
+                    sim->scene->path, stage_of(sim)->name);
+    TRY(simulation_pose_now(sim, why));
+    TRY(fit_arrays(sim, why));
+    TRY(find_given(sim, why));
+    TRY(find_links(sim, why));
+    if (sim->heat.vary)
+        TRY(heat_fit_rows(sim, ROWS, why));
+    sim->frozen.linked = true;
+    return STATUS_OK;
+}
+
+/* ---- bounds ---- */
+
+static void widen(const quantity *q, double *low, double *high)
+{
+    int count = q->kind == QUANTITY_NUMBER ? 1 : q->count;
+    for (int k = 0; q->given && k < count; k++) {
+        double value = q->kind == QUANTITY_NUMBER ? q->number[0] : q->value[k];
+        *low = fmin(*low, value);
+        *high = fmax(*high, value);
+    }
+}
+
+static bool is_heated(const simulation *sim)
+{
+    const scene *s = sim->scene;
+    bool heated = sim->live.law[SLOT_SOURCE] || sim->live.law[SLOT_HEAT_GENERATION];
+    for (int g = 0; g < s->group_count; g++)
+        heated = heated || s->group[g].thermal == THERMAL_FLUX;
+    for (int w = 0; sim->live.law[SLOT_WALL_HEAT] && w < s->wall_count; w++)
+        heated = heated || wall_heat_kind_of(scene_wall_heat(s, sim->stage, w)) == WALL_HEAT_FLUX;
+    return heated;
+}
+
+/* The interval spanned by the temperatures at the start of the stage and by those prescribed around the bed. */
+static status find_interval(simulation *sim, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    const scene *s = sim->scene;
+    heat_sums sums;
+    if (!isnan(f->low))
+        return STATUS_OK;
+    TRY(heat_observe(sim, &sums, why));
+    f->low = sums.lowest;
+    f->high = sums.highest;
+    if (sim->live.law[SLOT_ENVIRONMENT])
+        widen(&s->environment.temperature_k, &f->low, &f->high);
+    for (int w = 0; sim->live.law[SLOT_WALL_HEAT] && w < s->wall_count; w++)
+        widen(&scene_wall_heat(s, sim->stage, w)->temperature_k, &f->low, &f->high);
+    for (int g = 0; g < s->group_count; g++)
+        if (s->group[g].thermal == THERMAL_PRESCRIBED)
+            widen(&s->group[g].temperature, &f->low, &f->high);
+    return STATUS_OK;
+}
+
+static status find_limit(simulation *sim, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    clast_launch launch = launch_values(sim);
+    int64_t chunks = (sim->count + CHUNK - 1) / CHUNK;
+    cl_kernel kernel = launch_kernel(sim, "heat_frozen_spectrum");
+    TRY(observe_partial(sim, chunks, why));
+    TRY(launch_set(kernel, "heat_frozen_spectrum", why, sim->mixed ? "Lmmf" : "Lmmd", &launch, f->conductance, sim->partial, f->hottest));
+    TRY(launch_bind(sim, "heat_frozen_spectrum", 4, why));
+    TRY(launch_run(sim, kernel, "heat_frozen_spectrum", chunks, 1, why));
+    double *partial = malloc(sizeof *partial * (size_t)(chunks + 1)), most = 0.0;
+    if (!partial)
+        return fail(why, STATUS_ERROR, "out of memory");
+    status result = store_get(sim, sim->partial, FIELD_EXACT, 0, chunks, partial, why);
+    for (int64_t n = 0; n < chunks && result == STATUS_OK; n++)
+        most = fmax(most, partial[n]);
+    free(partial);
+    f->limit = most > 0.0 ? 1.0 / most : INFINITY;
+    return result;
+}
+
+/* Where beds are heated they may become hotter than anything so far; and a wind that changes changes what it takes. */
+static status keep_limit(simulation *sim, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    bool vary = sim->heat.vary && sim->live.law[SLOT_CONVECTION];
+    if (!isnan(f->limit) && f->high <= f->hottest && !vary)
+        return STATUS_OK;
+    if (isnan(f->hottest) || f->high > f->hottest)
+        f->hottest = is_heated(sim) ? 1.1 * f->high : f->high;
+    return find_limit(sim, why);
+}
+
+status frozen_limit(simulation *sim, double *out, failure *why)
+{
+    TRY(link_contacts(sim, why));
+    TRY(find_interval(sim, why));
+    if (isnan(sim->frozen.hottest))
+        sim->frozen.hottest = is_heated(sim) ? 1.1 * sim->frozen.high : sim->frozen.high;
+    TRY(find_limit(sim, why));
+    *out = sim->frozen.limit;
+    return STATUS_OK;
+}
+
+/* ---- steps ---- */
+
+/* Coefficients of the stages of RKL2 (Meyer, Balsara & Aslam 2014, Eqs. 16-18) or, with one stage, of Euler's method; and the weight that the
+ * flows of each stage have in the step as a whole. Stage k leads from row k to row k + 1 of the tables. */
+typedef struct scheme {
+    int stages;
+    double place[ROWS]; /* in the step */
+    double mu[ROWS], nu[ROWS], slope[ROWS], start_slope[ROWS], weight[ROWS];
+} scheme;
+
+static double rkl_b(int j)
+{
+    return j < 2 ? 1.0 / 3.0 : (double)(j * j + j - 2) / (double)(2 * j * (j + 1));
+}
+
+static void weigh(scheme *c)
+{
+    double two[3][ROWS] = {{0}};
+    for (int k = 0; k < c->stages; k++) {
+        double *now = two[(k + 1) % 3], *last = two[k % 3], *before = two[(k + 2) % 3];
+        for (int n = 0; n <= k; n++)
+            now[n] = c->mu[k] * (n < k ? last[n] : 0.0) + c->nu[k] * (n < k - 1 ? before[n] : 0.0);
+        now[k] += c->slope[k];
+        now[0] += c->start_slope[k];
+    }
+    memcpy(c->weight, two[c->stages % 3], sizeof c->weight);
+}
+
+static void rkl2(scheme *c, int stages)
+{
+    double w = 4.0 / (double)(stages * stages + stages - 2);
+    memset(c, 0, sizeof *c);
+    c->stages = stages;
+    c->slope[0] = rkl_b(1) * w;
+    c->place[1] = c->slope[0];
+    for (int j = 2; j <= stages; j++) {
+        int k = j - 1;
+        c->mu[k] = (double)(2 * j - 1) / j * rkl_b(j) / rkl_b(j - 1);
+        c->nu[k] = -(double)(j - 1) / j * rkl_b(j) / rkl_b(j - 2);
+        c->slope[k] = c->mu[k] * w;
+        c->start_slope[k] = -(1.0 - rkl_b(j - 1)) * c->slope[k];
+        c->place[j] = 0.25 * w * (double)(j * j + j - 2);
+    }
+    weigh(c);
+}
+
+static void euler(scheme *c)
+{
+    memset(c, 0, sizeof *c);
+    c->stages = 1;
+    c->slope[0] = c->weight[0] = c->place[1] = 1.0;
+}
+
+/* The odd number of stages under which a step is stable: odd ones damp better. */
+static int stages_for(double step, double limit)
+{
+    double needed = isfinite(limit) ? 0.5 * (sqrt(9.0 + 16.0 * step / (STABLE_SHARE * limit)) - 1.0) : 3.0;
+    int stages = needed < 3.0 ? 3 : (int)ceil(needed);
+    return stages % 2 ? stages : stages + 1;
+}
+
+static double longest_step(double limit)
+{
+    return 0.25 * STABLE_SHARE * limit * (STAGES_MAX * STAGES_MAX + STAGES_MAX - 2);
+}
+
+/* What is prescribed at the times of the stages, a row each. */
+static status write_stage_rows(simulation *sim, const scheme *c, double step, failure *why)
+{
+    double dt = sim->dt;
+    if (!sim->heat.vary)
+        return STATUS_OK;
+    sim->dt = 0.0; /* groups: at these times, not a step later */
+    for (int row = 0; row <= c->stages; row++)
+        heat_fill_row(sim, row, sim->time + c->place[row] * step);
+    sim->dt = dt;
+    return heat_write_rows(sim, c->stages + 1, why);
+}
+
+static status set_network(simulation *sim, cl_kernel kernel, const char *name, const clast_launch *launch, cl_mem rises, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    return launch_set(kernel, name, why, "Lmmmmm", launch, f->link, f->conductance, f->given, sim->heat.walls, rises);
+}
+
+/* All stages of one step; the rises at its end stand in rises[stages % 3]. */
+static status run_stages(simulation *sim, const scheme *c, double step, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "heat_frozen_stage");
+    TRY(launch_bind(sim, "heat_frozen_stage", 17, why));
+    for (int k = 0; k < c->stages; k++) {
+        cl_mem last = k > 0 ? f->rises[k % 3] : f->zero, before = k > 1 ? f->rises[(k - 1) % 3] : f->zero;
+        launch.heat_row = sim->heat.vary ? k : 0;
+        TRY(set_network(sim, kernel, "heat_frozen_stage", &launch, last, why));
+        TRY(launch_set_from(kernel, "heat_frozen_stage", 6, why, sim->mixed ? "mmmmfffffii" : "mmmmdddddii", before, f->rises[(k + 1) % 3], f->start,
+                            f->kept, c->mu[k], c->nu[k], c->slope[k] * step, c->start_slope[k] * step, c->weight[k] * step,
+                            (cl_int)(sim->heat.vary ? k + 1 : 0), (cl_int)(k == 0)));
+        TRY(launch_run(sim, kernel, "heat_frozen_stage", sim->count, CLAST_BLOCK, why));
+    }
+    return STATUS_OK;
+}
+
+typedef struct findings {
+    double error, rate, hottest, coldest;
+} findings;
+
+static status look_at_step(simulation *sim, const scheme *c, double step, findings *out, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    clast_launch launch = launch_values(sim);
+    cl_mem rises = f->rises[c->stages % 3];
+    cl_kernel error = launch_kernel(sim, "heat_frozen_error"), fold = launch_kernel(sim, "heat_frozen_findings");
+    int64_t chunks = (sim->count + CHUNK - 1) / CHUNK;
+    launch.heat_row = sim->heat.vary ? c->stages : 0;
+    TRY(set_network(sim, error, "heat_frozen_error", &launch, rises, why));
+    TRY(launch_set_from(error, "heat_frozen_error", 6, why, sim->mixed ? "mmmf" : "mmmd", f->start, f->error, f->rates, step));
+    TRY(run_grains(sim, "heat_frozen_error", 10, why));
+    TRY(observe_partial(sim, FINDINGS * chunks, why));
+    TRY(launch_set(fold, "heat_frozen_findings", why, "Lmmmm", &launch, rises, f->error, f->rates, sim->partial));
+    TRY(launch_bind(sim, "heat_frozen_findings", 5, why));
+    TRY(launch_run(sim, fold, "heat_frozen_findings", chunks, 1, why));
+    double *partial = malloc(sizeof *partial * (size_t)(FINDINGS * chunks + 1));
+    if (!partial)
+        return fail(why, STATUS_ERROR, "out of memory");
+    status result = store_get(sim, sim->partial, FIELD_EXACT, 0, FINDINGS * chunks, partial, why);
+    *out = (findings){0.0, 0.0, -INFINITY, INFINITY};
+    for (int64_t n = 0; n < chunks && result == STATUS_OK; n++) {
+        out->error = fmax(out->error, partial[FINDINGS * n]);
+        out->rate = fmax(out->rate, partial[FINDINGS * n + 1]);
+        out->hottest = fmax(out->hottest, partial[FINDINGS * n + 2]);
+        out->coldest = fmin(out->coldest, -partial[FINDINGS * n + 3]);
+    }
+    free(partial);
+    return result;
+}
+
+static status accept(simulation *sim, const scheme *c, double step, double until, const findings *found, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "heat_frozen_accept");
+    launch.heat_row = sim->heat.vary ? c->stages : 0;
+    TRY(launch_set(kernel, "heat_frozen_accept", why, "Lmm", &launch, f->rises[c->stages % 3], f->kept));
+    TRY(run_grains(sim, "heat_frozen_accept", 3, why));
+    sim->time = until;
+    sim->step++;
+    sim->stage_steps++;
+    simulation_set_step(sim, step);
+    f->rate = found->rate;
+    if (is_heated(sim)) {
+        f->high = fmax(f->high, found->hottest);
+        f->low = fmin(f->low, found->coldest);
+    }
+    return STATUS_OK;
+}
+
+/* Error that a step may make, K. */
+static double allowed_error(const simulation *sim)
+{
+    const frozen_heat *f = &sim->frozen;
+    double range = f->high - f->low, least = is_heated(sim) ? 1e-2 * f->high : 1e-9 * f->high;
+    return stage_of(sim)->heat_tolerance * fmax(range, least);
+}
+
+/* Rounding alone may carry a temperature past the ends of the interval. */
+static bool is_inside(const simulation *sim, const findings *found)
+{
+    const frozen_heat *f = &sim->frozen;
+    double slack = (sim->mixed ? 1e-6 : 1e-12) * f->high;
+    return is_heated(sim) || (found->hottest <= f->high + slack && found->coldest >= f->low - slack);
+}
+
+static status give_up(const simulation *sim, double step, const findings *found, failure *why)
+{
+    return fail(why, STATUS_GUARD,
+                "%s: stage %s: heat does not advance at t = %.9g s: a step of %.3g s still makes an error of %.3g K with temperatures from %.9g to %.9g K, "
+                "allowed are %.3g K and %.9g to %.9g K; raise `tolerance`",
+                sim->scene->path, stage_of(sim)->name, sim->time, step, found->error, found->coldest, found->hottest, allowed_error(sim),
+                sim->frozen.low, sim->frozen.high);
+}
+
+/* The step ahead, so that it ends on `until` or leaves room for another like it. */
+static double fit_step(double step, double left)
+{
+    if (step >= left)
+        return left;
+    return step > 0.5 * left ? 0.5 * left : step;
+}
+
+/* One step of RKL2 that meets the tolerance and the interval. The error of a step goes as its cube. */
+static status stabilised_step(simulation *sim, double until, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    scheme c;
+    findings found = {0};
+    double left = until - sim->time, allowed = allowed_error(sim);
+    if (isnan(f->next))
+        f->next = isfinite(f->limit) ? f->limit : left;
+    for (;;) {
+        double step = fit_step(fmin(f->next, longest_step(f->limit)), left);
+        rkl2(&c, stages_for(step, f->limit));
+        TRY(write_stage_rows(sim, &c, step, why));
+        TRY(run_stages(sim, &c, step, why));
+        TRY(look_at_step(sim, &c, step, &found, why));
+        bool inside = is_inside(sim, &found);
+        double growth = found.error > 0.0 ? 0.8 * cbrt(allowed / found.error) : 5.0;
+        if (found.error <= allowed && inside) {
+            double next = step * fmin(growth, 5.0);
+            f->next = step < f->next ? fmax(next, f->next) : next;
+            return accept(sim, &c, step, step == left ? until : sim->time + step, &found, why);
+        }
+        f->rejected++;
+        f->next = step * (inside ? fmax(fmin(growth, 0.8), 0.1) : 0.5);
+        if (f->next < 1e-6 * fmin(f->limit, left))
+            return give_up(sim, step, &found, why);
+    }
+}
+
+static status explicit_step(simulation *sim, double until, failure *why)
+{
+    scheme c;
+    findings found;
+    double left = until - sim->time, step = fit_step(EULER_SHARE * sim->frozen.limit, left);
+    euler(&c);
+    TRY(write_stage_rows(sim, &c, step, why));
+    TRY(run_stages(sim, &c, step, why));
+    TRY(look_at_step(sim, &c, step, &found, why));
+    return accept(sim, &c, step, step == left ? until : sim->time + step, &found, why);
+}
+
+status frozen_advance(simulation *sim, double until, int64_t most, failure *why)
+{
+    TRY(link_contacts(sim, why));
+    TRY(find_interval(sim, why));
+    for (int64_t n = 0; n < most && sim->time < until && sim->count > 0; n++) {
+        TRY(keep_limit(sim, why));
+        if (stage_of(sim)->heat_method == HEAT_EXPLICIT)
+            TRY(explicit_step(sim, until, why));
+        else
+            TRY(stabilised_step(sim, until, why));
+    }
+    return STATUS_OK;
+}
