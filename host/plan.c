@@ -1,3 +1,4 @@
+#include "frozen.h"
 #include "plan.h"
 
 #include "plan_data.h"
@@ -49,6 +50,15 @@ static double count_steps(const scene_stage *stage, double step_s)
     return fmin(by_time, by_count); /* fmin passes over a NAN */
 }
 
+/* Steps of a frozen stage follow from the error that they make: only the limit of Euler's method is known beforehand. */
+static status plan_frozen(simulation *sim, plan_stage *stage, failure *why)
+{
+    stage->limit = (step_limit){.recommended_s = NAN};
+    snprintf(stage->limit.binds, sizeof stage->limit.binds, "heat");
+    stage->step_s = stage->steps = NAN;
+    return frozen_limit(sim, &stage->limit.limit_s, why);
+}
+
 /* Limits as the scene stands at its start: what a stage finds when it begins is known only by running. */
 static status collect_stages(simulation *sim, plan *out, failure *why)
 {
@@ -57,6 +67,10 @@ static status collect_stages(simulation *sim, plan *out, failure *why)
         stage->stage = &out->scene->stage[s];
         TRY(simulation_begin_stage(sim, s, why));
         stage->live = sim->live;
+        if (stage->stage->frozen) {
+            TRY(plan_frozen(sim, stage, why));
+            continue;
+        }
         TRY(limit_find(sim, &stage->limit, why));
         stage->step_s = isnan(stage->stage->step_s) ? stage->limit.recommended_s : stage->stage->step_s;
         stage->steps = count_steps(stage->stage, stage->step_s);

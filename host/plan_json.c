@@ -1,4 +1,5 @@
 /* The plan for programs. What does not exist (no limit, a length that only running tells) is null. */
+#include "frozen.h"
 #include "plan_data.h"
 
 #include <jansson.h>
@@ -47,6 +48,9 @@ static json_t *stages(const plan *p)
                 json_object_set_new(laws_live, slot_name(slot), json_string(stage->live.law[slot]->name));
         json_object_set_new(entry, "name", text_or_null(stage->stage->name));
         json_object_set_new(entry, "laws", laws_live);
+        json_object_set_new(entry, "motion", json_string(stage->stage->frozen ? "frozen" : "free"));
+        if (stage->stage->frozen)
+            json_object_set_new(entry, "heat_method", json_string(frozen_method_name(stage->stage->heat_method)));
         json_object_set_new(entry, "limit_s", number(stage->limit.limit_s));
         json_object_set_new(entry, "recommended_s", number(stage->limit.recommended_s));
         json_object_set_new(entry, "bound_by", json_string(stage->limit.binds));

@@ -1,4 +1,5 @@
 /* The plan for a person at the terminal. */
+#include "frozen.h"
 #include "plan_data.h"
 
 #include <math.h>
@@ -129,9 +130,23 @@ static void print_end(const plan_stage *s)
     }
     if (rest)
         printf("%sat rest", or);
+    if (!isnan(stage->until_steady_k_s))
+        printf("%swhen no temperature changes faster than %.4g K/s", !isnan(stage->until_time_s) || stage->until_steps >= 0 ? " or " : "", stage->until_steady_k_s);
     if (!isnan(s->steps))
         printf(": %.4g steps%s", s->steps, rest ? " at most" : "");
     printf("\n");
+}
+
+/* Nothing moves: the method chooses its steps. */
+static void print_frozen(const plan *p, int s)
+{
+    char label[64], limit[32];
+    const plan_stage *stage = &p->stage[s];
+    print_seconds(limit, sizeof limit, stage->limit.limit_s);
+    printf("  %-16s motion is frozen; heat by the %s method, tolerance %.3g of the range of temperatures a step\n", stage_label(p, s, label, sizeof label),
+           frozen_method_name(stage->stage->heat_method), stage->stage->heat_tolerance);
+    printf("    limit of Euler's method %s\n", limit);
+    print_end(stage);
 }
 
 static void print_steps(const plan *p)
@@ -140,6 +155,10 @@ static void print_steps(const plan *p)
     printf("\nTime steps, for the particles as they are at the start\n");
     for (int s = 0; s < p->stage_count; s++) {
         const plan_stage *stage = &p->stage[s];
+        if (stage->stage->frozen) {
+            print_frozen(p, s);
+            continue;
+        }
         print_seconds(limit, sizeof limit, stage->limit.limit_s);
         print_seconds(recommended, sizeof recommended, stage->limit.recommended_s);
         print_seconds(step, sizeof step, stage->step_s);

@@ -91,6 +91,7 @@ static void complete(live_laws *live)
     if (live->law[SLOT_LEDGER])
         live->law[SLOT_DISSIPATION] = &law_dissipation_tracked;
     complete_heat(live);
+    live->frozen = live->law[SLOT_TEMPERATURE] != NULL;
     const law *verlet = live->law[SLOT_ROTATION] ? &law_velocity_verlet_spin : &law_velocity_verlet;
     live->law[SLOT_INTEGRATOR] = live->law[SLOT_INTEGRATOR] ? verlet : &law_semi_implicit_euler;
     for (slot_id slot = 0; slot < SLOT_COUNT; slot++) {
