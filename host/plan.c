@@ -1,9 +1,10 @@
-#include "frozen.h"
 #include "plan.h"
 
+#include "frozen.h"
 #include "plan_data.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>

@@ -428,7 +428,11 @@ static const bad_scene bad_scenes[] = {
      "it is `-1`"},
     {"shape: plane", "shape: plan", "did you mean `plane`?"},
     {"name: floor, ", "name: floor, servo: {pressure_pa: 1}, ", "`servo` (a wall that moves to keep a force) is not in this version yet"},
-    {"rest: 1.0e-9", "rest: 1.0e-9, steady_k_s: 1", "`steady_k_s` (an end by temperature rate, which needs heat) is not in this version yet"},
+    {"rest: 1.0e-9", "rest: 1.0e-9, steady_k_s: 1", "`steady_k_s` ends stages with `motion: frozen` only; use `time_s` here"},
+    {"until: {time_s: 1}", "motion: frozen, until: {time_s: 1}", "`motion: frozen` leaves only heat to advance, and no law of heat is listed"},
+    {"until: {time_s: 1}", "motion: still, until: {time_s: 1}", "`motion` must be one of `free`, `frozen`; it is `still`"},
+    {"until: {time_s: 1}", "heat: {tolerance: 0}, until: {time_s: 1}", "`tolerance` must be a number, at least 1e-12, at most 0.1"},
+    {"until: {time_s: 1}", "heat: {method: rk4}, until: {time_s: 1}", "`method` must be one of"},
     {"high_m: [1, 1, 1]}", "high_m: [1, 1, 1], periodic: [w]}", "`periodic` must be one of `x`, `y`, `z`; it is `w`"},
     {"high_m: [1, 1, 1]}", "high_m: [1, 1, 1], periodic: x}", "`periodic` must be a list"},
     /* effects */
