@@ -194,11 +194,6 @@ static status check_pair(const contact_class *class, double ri, double rj, failu
     bonded_pair pair;
     if (!make_pair(class, ri, rj, &pair))
         return STATUS_OK; /* no bond, no questions */
-    if (bond->option[BOND_CRITERION] >= BOND_SCALAR_ABOVE && isnan(interaction_value(class, &property_bond_threshold)))
-        return fail(why, STATUS_BAD_INPUT,
-                    "%s:%d:%d: effects[bond]: `%s` and `%s` can bond, and the criterion needs to know above which value: add `bond_threshold` to "
-                    "their entry under `interactions` or to `default`",
-                    s->path, bond->at.line, bond->at.column, a, b);
     if (!(pair.a < pair.a2))
         return fail(why, STATUS_BAD_INPUT,
                     "%s:%d:%d: effects[bond]: between `%s` and `%s` the exponent of adhesion must be below that of repulsion, and it is not: "
@@ -218,12 +213,27 @@ static status check_pair(const contact_class *class, double ri, double rj, failu
     return STATUS_OK;
 }
 
+static status check_threshold(const contact_class *class, failure *why)
+{
+    const scene *s = class->scene;
+    const effect *bond = scene_effect(s, -1, SLOT_BOND);
+    bool wall = class->material_b < 0;
+    if (bond->option[BOND_CRITERION] < BOND_SCALAR_ABOVE || !pair_bonds(class) || !isnan(interaction_value(class, &property_bond_threshold)))
+        return STATUS_OK;
+    return fail(why, STATUS_BAD_INPUT,
+                "%s:%d:%d: effects[bond]: `%s` and `%s` can bond, and the criterion needs to know above which value: add `bond_threshold` to their "
+                "entry under `interactions` or to `default`",
+                s->path, bond->at.line, bond->at.column, s->material[class->material_a].name,
+                wall ? s->wall[class->wall].name : s->material[class->material_b].name);
+}
+
 /* The extremes of sizes: overlaps at rest are powers of r*. */
 static status check_class(const contact_class *class, const size_range *size, failure *why)
 {
     const size_range *a = &size[class->material_a], *b = class->material_b < 0 ? a : &size[class->material_b];
     const double pairs[4][2] = {{a->least, b->least}, {a->least, b->most}, {a->most, b->least}, {a->most, b->most}};
-    for (int n = 0; n < 4 && a->count > 0 && b->count > 0; n++)
+    TRY(check_threshold(class, why));
+    for (int n = 0; n < 4 && is_adhesion(class->scene, class->stage) && a->count > 0 && b->count > 0; n++)
         TRY(check_pair(class, pairs[n][0], pairs[n][1], why));
     return STATUS_OK;
 }
@@ -233,7 +243,7 @@ status bond_check(const scene *scene, const bed *bed, failure *why)
     size_range *size = sizes_of(scene, bed);
     status result = size ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
     for (int s = 0; s < scene->stage_count; s++)
-        for (int a = 0; a < scene->material_count && is_adhesion(scene, s); a++)
+        for (int a = 0; a < scene->material_count && scene_effect(scene, s, SLOT_BOND); a++)
             for (int p = a; p < scene->material_count + scene->wall_count && result == STATUS_OK; p++) {
                 bool wall = p >= scene->material_count;
                 result = check_class(&(contact_class){scene, s, a, wall ? -1 : p, wall ? p - scene->material_count : -1}, size, why);

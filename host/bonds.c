@@ -3,6 +3,7 @@
 #include "laws/laws.h"
 #include "simulation.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #define CHUNK 1024
@@ -22,7 +23,7 @@ static status count_records(simulation *sim, int64_t *made, int64_t *alive, fail
 {
     stored_field *bonded = store_find(sim, field_bonded.name);
     cl_kernel kernel = launch_kernel(sim, "table_bond_sums");
-    int records = sim->table.record_count;
+    int records = sim->table.wall_base + sim->table.wall_record_count;
     int64_t chunks = (records + CHUNK - 1) / CHUNK;
     *made = *alive = 0;
     if (!bonded || !kernel || !sim->table.built || records == 0)
@@ -30,7 +31,7 @@ static status count_records(simulation *sim, int64_t *made, int64_t *alive, fail
     double *sum = malloc(2 * sizeof *sum * (size_t)chunks);
     status result = sum ? observe_partial(sim, 2 * chunks, why) : fail(why, STATUS_ERROR, "out of memory");
     if (result == STATUS_OK)
-        result = launch_set(kernel, "table_bond_sums", why, "mmi", bonded->mem, sim->partial, (cl_int)records);
+        result = launch_set(kernel, "table_bond_sums", why, "mmiii", bonded->mem, sim->partial, sim->table.pair_count, sim->table.wall_base, records);
     if (result == STATUS_OK)
         result = launch_run(sim, kernel, "table_bond_sums", chunks, 1, why);
     if (result == STATUS_OK)
@@ -68,4 +69,54 @@ status bonds_after(simulation *sim, failure *why)
     TRY(count_records(sim, &made, &alive, why));
     sim->bonds_gone -= made;
     return STATUS_OK;
+}
+
+bool bonds_are_kept(const simulation *sim)
+{
+    return sim->live.law[SLOT_BOND] && sim->live.law[SLOT_BOND]->keeps_bonds;
+}
+
+/* Indices are no longer those of the ids once grains have been sorted, so the array that leads from ids to them is free. */
+static status find_inverse(simulation *sim, const clast_launch *launch, failure *why)
+{
+    const cl_int none = -1;
+    cl_kernel kernel = launch_kernel(sim, "table_bond_inverse");
+    sim->particles_stale = true;
+    TRY_CL(clEnqueueFillBuffer(sim->device->queue, sim->where, &none, sizeof none, 0, 4 * (size_t)sim->stride, 0, NULL, NULL), "table_bond_inverse");
+    TRY(launch_set(kernel, "table_bond_inverse", why, "Lmm", launch, sim->table.work[2], sim->where));
+    return launch_run(sim, kernel, "table_bond_inverse", sim->count, CLAST_BLOCK, why);
+}
+
+status bonds_keep(simulation *sim, const clast_launch *launch, int room, bool fill, failure *why)
+{
+    contact_table *t = &sim->table;
+    if (!bonds_are_kept(sim) || !t->built)
+        return STATUS_OK;
+    const char *name = fill ? "table_bond_fill" : "table_bond_count";
+    cl_kernel kernel = launch_kernel(sim, name);
+    int next = 1 - t->now;
+    if (!fill)
+        TRY(find_inverse(sim, launch, why));
+    cl_mem first = fill ? t->work[3] : t->work[0], second = fill ? t->owner[next] : t->work[1];
+    cl_mem third = fill ? t->other[next] : store_find(sim, "force")->mem;
+    TRY(launch_set(kernel, name, why, "Lmmmmmmmmmmmmmmii", launch, t->grid, store_find(sim, "position")->mem, store_find(sim, "radius")->mem,
+                   store_find(sim, "id")->mem, t->work[2], sim->where, t->owner[t->now], t->other[t->now], t->slot_offset[t->now], t->slots[t->now],
+                   store_find(sim, field_bonded.name)->mem, first, second, third, room, t->old_wall_base));
+    return launch_run(sim, kernel, name, sim->count, CLAST_BLOCK, why);
+}
+
+/* Over all kinds of contacts in all stages, for the largest grains. */
+double bonds_reach(const scene *scene, const live_laws *live, double radius)
+{
+    double reach = 0.0;
+    for (int s = 0; s < scene->stage_count; s++)
+        for (int a = 0; a < scene->material_count; a++)
+            for (int p = 0; p < scene->material_count + scene->wall_count; p++) {
+                bool wall = p >= scene->material_count;
+                contact_class class = {scene, s, a, wall ? -1 : p, wall ? p - scene->material_count : -1};
+                for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
+                    if (live->law[slot] && live->law[slot]->reach)
+                        reach = fmax(reach, live->law[slot]->reach(&class, radius));
+            }
+    return reach;
 }

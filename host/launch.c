@@ -165,7 +165,8 @@ status launch_open(simulation *sim, failure *why)
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
-                                        "particle_synchronise", "table_bond_sums", "heat_conductances", "heat_limit", "heat_sums", "heat_areas",
+                                        "particle_synchronise", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
+                                        "heat_conductances", "heat_limit", "heat_sums", "heat_areas",
                                         "heat_frozen_given", "heat_frozen_links", "heat_frozen_stage", "heat_frozen_error",
                                         "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_spectrum"};
     sim->kernel_count = 0;

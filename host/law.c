@@ -6,7 +6,7 @@
 #include <string.h>
 
 const law *const laws[] = {&law_hertz,        &law_linear,        &law_mindlin, &law_coulomb_linear, &law_elastic_plastic,
-                           &law_constant_torque, &law_power, &law_adhesion, &law_local_damping, &law_viscous_damping, &law_overlap_area,
+                           &law_constant_torque, &law_power, &law_adhesion, &law_parallel, &law_local_damping, &law_viscous_damping, &law_overlap_area,
                            &law_batchelor_obrien, &law_pipe_network, &law_newton,
                            &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, NULL};
 
@@ -71,6 +71,8 @@ const property *const *interaction_properties(void)
                                           &property_bond_equilibrium_overlap, &property_bond_normalised_stiffness,
                                           &property_bond_equilibrium_strain, &property_bond_exponent, &property_bond_damping,
                                           &property_bond_threshold, &property_bond_tensile_strength, &property_bond_shear_strength,
+                                          &property_bond_youngs_modulus, &property_bond_shear_modulus, &property_bond_radius_ratio,
+                                          &property_bond_gap_ratio,
                                           NULL};
     return all;
 }

@@ -57,6 +57,13 @@ const property property_bond_threshold = {"bond_threshold", -1e30, 1e29, false, 
                                           "value above which the bond criterion is met, in the unit of what it looks at"};
 const property property_bond_tensile_strength = {"bond_tensile_strength_pa", 0, 1e29, true, 1e30, NULL,
                                                  "tension at which a bond breaks; default: it does not"};
+const property property_bond_youngs_modulus = {"bond_youngs_modulus_pa", 0, 1e15, false, 0, NULL,
+                                              "Young's modulus of the bond's material; 0: this pair does not bond"};
+const property property_bond_shear_modulus = {"bond_shear_modulus_pa", 0, 1e15, false, NAN, NULL,
+                                              "shear modulus of the bond's material; default: 0.4 of its Young's modulus"};
+const property property_bond_radius_ratio = {"bond_radius_ratio", 0, 1, true, 1, NULL, "radius of the bond, of the smaller grain's"};
+const property property_bond_gap_ratio = {"bond_gap_ratio", 0, 1, false, 1e-6, NULL,
+                                          "gap up to which a bond is made, of the smaller grain's radius"};
 const property property_bond_shear_strength = {"bond_shear_strength_pa", 0, 1e29, true, 1e30, NULL,
                                                "shear stress at which a bond breaks; default: it does not"};
 

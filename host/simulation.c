@@ -53,7 +53,7 @@ static void choose_origin(simulation *sim)
 static status check_periods(const simulation *sim, failure *why)
 {
     const domain *d = &sim->scene->domain;
-    double least = 2.0 * (2.0 * sim->radius_max + sim->table.skin);
+    double least = 2.0 * (2.0 * sim->radius_max + sim->table.skin + sim->reach);
     for (int c = 0; d->given && c < 3; c++)
         if (d->periodic[c] && d->high_m[c] - d->low_m[c] < least)
             return fail(why, STATUS_BAD_INPUT,
@@ -204,6 +204,7 @@ status simulation_create(const scene *scene, const bed *bed, device *device, con
     sim->mixed = sim->all.law[SLOT_PRECISION] != NULL;
     measure_bed(sim, bed);
     choose_origin(sim);
+    sim->reach = bonds_reach(scene, &sim->all, sim->radius_max);
     sim->table.skin_is_given = !isnan(scene->table.skin_m);
     sim->table.skin = sim->table.skin_is_given ? scene->table.skin_m : 0.1 * sim->mean_radius;
     sim->batch_limit = scene->table.batch_steps > 0 ? scene->table.batch_steps : 64;

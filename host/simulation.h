@@ -12,7 +12,7 @@
 #include <clast/shared.h>
 
 #define SIMULATION_FIELDS_MAX 32
-#define SIMULATION_KERNELS_MAX 48
+#define SIMULATION_KERNELS_MAX 64
 #define BATCH_STEPS_MAX 1024
 
 /* One array on the device. */
@@ -34,6 +34,7 @@ typedef struct contact_table {
     int64_t record_capacity, slot_capacity, cell_capacity;
     int64_t slots_held[2]; /* of each generation */
     bool slots_outgrown[2];
+    int old_wall_base; /* of the generation in use, while the next one is built */
     int pair_count, wall_base, record_count; /* record_count: end of the wall records, filled up to a work-group */
     int wall_record_count;
     int64_t record_stride;
@@ -135,6 +136,7 @@ typedef struct simulation {
     int64_t left_count;
     double left_mass;
     int64_t bonds_gone;      /* bonds that records had which are no longer in the table */
+    double reach;            /* largest gap over which laws act, m */
     bool bonding_done;       /* contacts have bonded at the time given for it */
     double left_energy[LEDGER_TERMS]; /* what the grains that have left had in the ledger */
     uint64_t bytes;          /* on the device */
@@ -275,6 +277,13 @@ status bonds_count(simulation *sim, bond_sums *out, failure *why);
 /* Around whatever drops records or their histories, so that the bonds they had still count. */
 status bonds_before(simulation *sim, failure *why);
 status bonds_after(simulation *sim, failure *why);
+/* Largest gap over which laws act between grains of at most that radius, m. */
+double bonds_reach(const scene *scene, const live_laws *live, double radius);
+/* The live law's bonds hold at any distance. */
+bool bonds_are_kept(const simulation *sim);
+/* Records of such bonds into the table that is being built: counted, then written where grains have more than `room` partners. */
+status bonds_keep(simulation *sim, const clast_launch *launch, int room, bool fill, failure *why);
+
 /* ledger.c */
 /* The terms of the ledger so far, LEDGER_TERMS of them in the order of ledger_terms. */
 status ledger_read(simulation *sim, double *out, failure *why);

@@ -353,6 +353,30 @@ static status load_run(simulation *sim, const bundle *in, const char *path, int6
     return STATUS_OK;
 }
 
+/* A skin that holds every pair with a history: bonds reach further than a new table would look. */
+static status skin_of_histories(simulation *sim, const bundle *in, const char *path, double *skin, failure *why)
+{
+    const bundle_entry *pair, *position, *radius;
+    const domain *d = &sim->scene->domain;
+    *skin = sim->table.skin;
+    TRY(bundle_get(in, path, "contacts/pair", BUNDLE_I32, -1, 2, &pair, why));
+    TRY(bundle_get(in, path, "particles/position", BUNDLE_F64, sim->id_count, 3, &position, why));
+    TRY(bundle_get(in, path, "particles/radius", BUNDLE_F64, sim->id_count, 1, &radius, why));
+    const double *x = position->data, *r = radius->data;
+    for (int64_t k = 0; k < pair->rows; k++) {
+        int32_t i = ((int32_t *)pair->data)[2 * k], j = ((int32_t *)pair->data)[2 * k + 1];
+        double distance = 0.0;
+        for (int c = 0; c < 3 && j >= 0; c++) {
+            double apart = x[3 * i + c] - x[3 * j + c], length = d->given && d->periodic[c] ? d->high_m[c] - d->low_m[c] : 0.0;
+            apart -= length > 0.0 ? length * rint(apart / length) : 0.0;
+            distance += apart * apart;
+        }
+        if (j >= 0)
+            *skin = fmax(*skin, 1.000001 * (sqrt(distance) - r[i] - r[j]));
+    }
+    return STATUS_OK;
+}
+
 status state_load(simulation *sim, const bundle *in, const char *path, failure *why)
 {
     const bundle_entry *present, *held;
@@ -372,8 +396,13 @@ status state_load(simulation *sim, const bundle *in, const char *path, failure *
             TRY(load_field(sim, &sim->field[f], in, path, present->data, why));
     replay_motions(sim, (int)stage);
     int64_t made = sim->bonds_gone; /* of all, with those of the records to come */
+    double skin = sim->table.skin;
+    TRY(skin_of_histories(sim, in, path, &sim->table.skin, why));
+    bool wider = sim->table.skin > skin;
     TRY(simulation_enter_stage(sim, (int)stage, why));
     TRY(load_histories(sim, in, path, why));
+    sim->table.skin = skin;
     sim->bonds_gone = made;
-    return bonds_after(sim, why);
+    TRY(bonds_after(sim, why));
+    return wider ? table_build(sim, false, why) : STATUS_OK;
 }

@@ -93,7 +93,8 @@ static void set_grid(simulation *sim, bool drop_outside)
     clast_grid *g = &t->grid_host;
     memset(g, 0, sizeof *g);
     g->radius_max = sim->radius_max;
-    g->skin = t->skin;
+    g->skin = t->skin + sim->reach;
+    g->wall_share = bonds_are_kept(sim) ? 1.0 : 0.0;
     g->drop_outside = drop_outside;
     memcpy(g->origin, sim->bed_low, sizeof g->origin);
     int levels = 1;
@@ -101,7 +102,7 @@ static void set_grid(simulation *sim, bool drop_outside)
         levels++;
     g->level_count = levels;
     for (int l = 0; l < levels; l++) {
-        set_level(sim, 2.0 * sim->radius_max / pow(2.0, l) + t->skin, sim->bed_low, sim->bed_high, &g->level[l]);
+        set_level(sim, 2.0 * sim->radius_max / pow(2.0, l) + g->skin, sim->bed_low, sim->bed_high, &g->level[l]);
         g->level[l].first_cell = g->cell_count;
         g->cell_count += g->level[l].cells[0] * g->level[l].cells[1] * g->level[l].cells[2];
     }
@@ -219,6 +220,7 @@ static status count_records(simulation *sim, const clast_launch *launch, failure
     TRY(launch_set(count, "table_count", why, "Lmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_A], t->work[WORK_B],
                    store_find(sim, "force")->mem, kept_partners(sim)));
     TRY(launch_run(sim, count, "table_count", sim->stride, GROUP, why));
+    TRY(bonds_keep(sim, launch, kept_partners(sim), false, why));
     TRY(scan(sim, t->work[WORK_A], t->work[WORK_D], sim->stride, why));
     t->wall_record_count = 0;
     cl_uint total;
@@ -279,6 +281,7 @@ static status fill_records(simulation *sim, const clast_launch *launch, int room
     TRY(launch_set(fill, "table_fill", why, "Lmmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_D], t->owner[next],
                    t->other[next], store_find(sim, "force")->mem, room));
     TRY(launch_run(sim, fill, "table_fill", sim->count, GROUP, why));
+    TRY(bonds_keep(sim, launch, room, true, why));
     TRY(launch_set(pad, "table_pad", why, "mmii", t->owner[next], t->other[next], t->pair_count, t->wall_base));
     TRY(launch_run(sim, pad, "table_pad", t->wall_base - t->pair_count, GROUP, why));
     int end = t->wall_base + t->wall_record_count;
@@ -391,7 +394,7 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
 {
     contact_table *t = &sim->table;
     double start = seconds();
-    int old_wall_base = t->wall_base;
+    int old_wall_base = t->old_wall_base = t->wall_base;
     int64_t old_stride = t->record_stride, old_capacity = t->record_capacity;
     TRY(bonds_before(sim, why));
     set_grid(sim, drop_outside);

@@ -45,8 +45,11 @@ adhesion adhesion_of(const contact_class *class)
 
 /* ---- when contacts bond ---- */
 
-static bool pair_bonds(const contact_class *class)
+bool pair_bonds(const contact_class *class)
 {
+    const effect *bond = scene_effect(class->scene, -1, SLOT_BOND);
+    if (bond && bond->law == &law_parallel)
+        return interaction_value(class, &property_bond_youngs_modulus) > 0.0;
     return adhesion_of(class).coefficient > 0.0;
 }
 
@@ -197,4 +200,46 @@ const law law_adhesion = {
     .derive = derive_adhesion,
     .constants = adhesion_constants,
     .scene_constants = adhesion_scene_constants,
+};
+
+/* ---- parallel ---- */
+
+static const field field_bond_gap = {"bond_gap", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, "m", "gap between the surfaces when the bond was made"};
+static const field field_bond_shear = {"bond_shear", PER_RECORD, FIELD_REAL, 3, FIELD_HISTORY, "m", "displacement across the bond, in the frame of its owner"};
+static const field field_bond_turn = {"bond_turn", PER_RECORD, FIELD_REAL, 3, FIELD_HISTORY, "rad", "turn across the bond, in the frame of its owner"};
+
+static void derive_parallel(const contact_class *class, const double *option, double *parameter)
+{
+    (void)option;
+    double young = interaction_value(class, &property_bond_youngs_modulus), shear = interaction_value(class, &property_bond_shear_modulus);
+    double xi = interaction_value(class, &property_bond_damping);
+    parameter[0] = young;
+    parameter[1] = isnan(shear) ? 0.4 * young : shear;
+    parameter[2] = interaction_value(class, &property_bond_radius_ratio);
+    parameter[3] = isnan(xi) ? 0.0 : 2.0 * xi;
+    parameter[4] = interaction_value(class, &property_bond_tensile_strength);
+    parameter[5] = interaction_value(class, &property_bond_shear_strength);
+    parameter[6] = interaction_value(class, &property_bond_gap_ratio);
+}
+
+static double parallel_reach(const contact_class *class, double radius)
+{
+    return pair_bonds(class) ? interaction_value(class, &property_bond_gap_ratio) * radius : 0.0;
+}
+
+const law law_parallel = {
+    .name = "parallel",
+    .slot = SLOT_BOND,
+    .doc = "A beam of cement beside the contact, which stretches, shears, bends and twists, and breaks at its tensile or shear strength; it holds at "
+           "any distance. A pair bonds where `bond_youngs_modulus_pa` is above 0.",
+    .source = "Potyondy and Cundall 2004, with dampers",
+    .kernel_file = "effect/bond_parallel.cl",
+    .options = {BOND_OPTIONS},
+    .pair_fields = {&field_bonded, &field_bond_gap, &field_bond_shear, &field_bond_turn},
+    .parameters = {"PARALLEL_YOUNG", "PARALLEL_SHEAR", "PARALLEL_RADIUS", "PARALLEL_DAMPING", "PARALLEL_TENSILE", "PARALLEL_SHEAR_STRENGTH",
+                   "PARALLEL_GAP"},
+    .derive = derive_parallel,
+    .reach = parallel_reach,
+    .keeps_bonds = true,
+    .turns = true,
 };

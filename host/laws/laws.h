@@ -4,7 +4,7 @@
 #include "../law.h"
 
 extern const law law_hertz, law_linear, law_mindlin, law_coulomb_linear, law_elastic_plastic, law_constant_torque, law_local_damping,
-    law_viscous_damping, law_power, law_adhesion;
+    law_viscous_damping, law_power, law_adhesion, law_parallel;
 extern const law law_bonding_always, law_bonding_at_time, law_bonding_scalar, law_bonding_temperature;
 extern const law law_precision_mixed, law_composition_several, law_periodic_box, law_motion_groups, law_rotation_spin, law_slip_single, law_slip_two,
     law_walls_planes, law_walls_finite, law_walls_round, law_orientation_quaternion, law_semi_implicit_euler, law_velocity_verlet, law_velocity_verlet_spin,
@@ -31,6 +31,8 @@ enum { BOND_ALWAYS, BOND_AT_TIME, BOND_SCALAR_ABOVE, BOND_BOTH_ABOVE, BOND_MEAN_
 /* Places of the options that every bond law has, in this order. */
 enum { BOND_CRITERION, BOND_TIME, BOND_OWN /* the first that a law adds; of adhesion: its clamps */ };
 /* The law that looks for the criterion of a live bond law. */
+/* The interactions of the pair let it bond. */
+bool pair_bonds(const contact_class *class);
 bool bonding_reads_temperature(const law *bond, const double *option);
 const law *bonding_of(const law *bond, const double *option);
 

@@ -152,7 +152,8 @@ typedef struct clast_level {
 typedef struct clast_grid {
     clast_f64 origin[3];
     clast_f64 radius_max;
-    clast_f64 skin;
+    clast_f64 skin;        /* with the gap over which laws act */
+    clast_f64 wall_share;  /* of its radius by which a grain looks further for walls */
     clast_level level[CLAST_LEVELS_MAX];
     clast_i32 level_count;
     clast_i32 cell_count; /* of all levels; one more bucket holds what has left */

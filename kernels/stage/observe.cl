@@ -216,6 +216,8 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
     c.mass_j = wall ? HEAVY : mass_j;
     c.radius_eff = wall ? c.radius_i : c.radius_i * c.radius_j / (c.radius_i + c.radius_j);
     c.mass_eff = c.mass_i * c.mass_j / (c.mass_i + c.mass_j);
+    c.arm_i = c.radius_i;
+    c.arm_j = wall ? R(0.0) : c.radius_j;
     c.approach = R(0.0);
     c.class = class;
     c.value = contact_constants + class * CONTACT_CONSTANTS;

@@ -1,14 +1,105 @@
 /* Bonds as the table sees them. Per chunk of records: bonds that they have had, and those that live now (the field `bonded` holds twice the
  * first, less one while the last lives, with a sign that does not matter here). */
-__kernel void table_bond_sums(__global const real *restrict bonded, __global exact *restrict partial, const int record_count)
+__kernel void table_bond_sums(__global const real *restrict bonded, __global exact *restrict partial, const int pair_count,
+                              const int wall_base, const int record_end)
 {
-    int chunk = get_global_id(0), first = chunk * SCAN_CHUNK, end = min(first + SCAN_CHUNK, record_count);
+    int chunk = get_global_id(0), first = chunk * SCAN_CHUNK, end = min(first + SCAN_CHUNK, record_end);
     int made = 0, alive = 0;
     for (int k = first; k < end; k++) {
+        if (k >= pair_count && k < wall_base)
+            continue; /* fills up a work-group */
         int count = (int)(fabs(bonded[k]) + R(0.5));
         made += (count + 1) / 2;
         alive += count % 2;
     }
     partial[2 * chunk] = precise_store(precise_from_int(made));
     partial[2 * chunk + 1] = precise_store(precise_from_int(alive));
+}
+
+/* ---- bonds that reach further than the table looks ---- */
+
+/* New index of every grain by its old one; -1 (set before) for those that have left. */
+__kernel void table_bond_inverse(const clast_launch launch, __global const int *restrict order, __global int *restrict inverse)
+{
+    int i = get_global_id(0);
+    if (i < launch.particle_count)
+        inverse[order[i]] = i;
+}
+
+/* Calls TAKE(j) for every grain that i is bonded to, owns the pair with, and would not find. */
+#define TABLE_FOR_BONDED(TAKE)                                                                                                \
+    int old = order[i];                                                                                                       \
+    uint old_end = old_slot_offset[old / CLAST_BLOCK + 1];                                                                    \
+    for (uint s = old_slot_offset[old / CLAST_BLOCK] + old % CLAST_BLOCK; s < old_end; s += CLAST_BLOCK) {                    \
+        int entry = old_slots[s], a = (entry > 0 ? entry : -entry) - 1;                                                       \
+        if (entry == 0)                                                                                                       \
+            break;                                                                                                            \
+        if (a >= old_wall_base || (int)(fabs(bonded[a]) + R(0.5)) % 2 == 0)                                                   \
+            continue;                                                                                                         \
+        int j = inverse[entry > 0 ? old_other[a] : old_owner[a]];                                                             \
+        if (j < 0)                                                                                                            \
+            continue;                                                                                                         \
+        precise radius_j = precise_load(radius[j]);                                                                           \
+        bool owns = precise_less(radius_i, radius_j) || (!precise_less(radius_j, radius_i) && id[j] > id_i);                  \
+        if (owns && !table_pairs(&launch, skin, i, place, radius_i, id_i, j, position, radius, id)) {                         \
+            TAKE(j);                                                                                                          \
+        }                                                                                                                     \
+    }
+
+/* Adds them to what each grain owns and to its slots, and to the partners that are `kept` where there is room. */
+__kernel void table_bond_count(const clast_launch launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
+                               __global const exact *restrict radius, __global const int *restrict id, __global const int *restrict order,
+                               __global const int *restrict inverse, __global const int *restrict old_owner, __global const int *restrict old_other,
+                               __global const uint *restrict old_slot_offset, __global const int *restrict old_slots,
+                               __global const real *restrict bonded, __global uint *restrict own_count, __global uint *restrict slot_count,
+                               __global int *restrict kept, const int room, const int old_wall_base)
+{
+    int i = get_global_id(0);
+    if (i >= launch.particle_count)
+        return;
+    precise3 place = PRECISE_GRAIN3(position, i);
+    precise radius_i = precise_load(radius[i]);
+    real skin = number(grid->skin);
+    int id_i = id[i];
+    uint found = own_count[i], before = found;
+#define TABLE_COUNT_BONDED(j)                                   \
+    if (found < (uint)room)                                     \
+        kept[(size_t)i * room + found] = j;                     \
+    found++;                                                    \
+    atomic_inc((volatile __global uint *)&slot_count[j])
+    TABLE_FOR_BONDED(TABLE_COUNT_BONDED)
+    own_count[i] = found;
+    atomic_add((volatile __global uint *)&slot_count[i], found - before);
+}
+
+/* Grains whose partners were not all kept have been searched for again: theirs are put where they belong among what was found. */
+__kernel void table_bond_fill(const clast_launch launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
+                              __global const exact *restrict radius, __global const int *restrict id, __global const int *restrict order,
+                              __global const int *restrict inverse, __global const int *restrict old_owner, __global const int *restrict old_other,
+                              __global const uint *restrict old_slot_offset, __global const int *restrict old_slots,
+                              __global const real *restrict bonded, __global const uint *restrict own_start, __global int *restrict owner,
+                              __global int *restrict other, const int room, const int old_wall_base)
+{
+    int i = get_global_id(0);
+    if (i >= launch.particle_count || (int)(own_start[i + 1] - own_start[i]) <= room)
+        return;
+    precise3 place = PRECISE_GRAIN3(position, i);
+    precise radius_i = precise_load(radius[i]);
+    real skin = number(grid->skin);
+    int id_i = id[i];
+    uint extra = 0;
+#define TABLE_TALLY_BONDED(j) extra++
+    {
+        TABLE_FOR_BONDED(TABLE_TALLY_BONDED)
+    }
+    uint first = own_start[i], k = own_start[i + 1] - extra;
+#define TABLE_WRITE_BONDED(j)                                       \
+    uint at = k++;                                                  \
+    owner[at] = i;                                                  \
+    for (; at > first && id[other[at - 1]] > id[j]; at--)           \
+        other[at] = other[at - 1];                                  \
+    other[at] = j
+    {
+        TABLE_FOR_BONDED(TABLE_WRITE_BONDED)
+    }
 }

@@ -38,7 +38,7 @@ __kernel void table_count_walls(const clast_launch launch, __global const clast_
     if (i < launch.particle_count) {
         precise3 x = PRECISE_GRAIN3(position, i);
         for (int f = 0; f < launch.face_count; f++)
-            found += table_reaches(faces + f, x, GRAIN_RADIUS(i) + number(grid->skin)) ? 1 : 0;
+            found += table_reaches(faces + f, x, GRAIN_RADIUS(i) * (R(1.0) + number(grid->wall_share)) + number(grid->skin)) ? 1 : 0;
         slot_count[i] += found;
     }
     wall_count[i] = found;
@@ -54,7 +54,7 @@ __kernel void table_fill_walls(const clast_launch launch, __global const clast_g
     precise3 x = PRECISE_GRAIN3(position, i);
     uint k = wall_base + wall_start[i];
     for (int f = 0; f < launch.face_count; f++)
-        if (table_reaches(faces + f, x, GRAIN_RADIUS(i) + number(grid->skin))) {
+        if (table_reaches(faces + f, x, GRAIN_RADIUS(i) * (R(1.0) + number(grid->wall_share)) + number(grid->skin))) {
             owner[k] = i;
             other[k] = f;
             k++;
