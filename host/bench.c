@@ -162,11 +162,26 @@ static status measure(simulation *sim, const bench_options *options, bench_figur
 
 /* ---- reporting ---- */
 
+/* "rolling, conduction" */
+static void name_effects(unsigned effects, char *text, size_t size)
+{
+    const char *word = bed_effect_words;
+    text[0] = '\0';
+    for (unsigned bit = 1; *word; bit <<= 1) {
+        size_t length = strcspn(word, "|"), used = strlen(text);
+        if (effects & bit)
+            snprintf(text + used, size - used, "%s%.*s", used ? ", " : "", (int)length, word);
+        word += length + (word[length] == '|');
+    }
+}
+
 static void print_figures(const bench_figures *f, const bench_options *options)
 {
     double n = (double)f->particles;
-    printf("Settled bed of %lld grains%s in %s precision on %s\n", (long long)f->particles,
-           options->rolling ? ", rolling resistance," : "", options->mixed ? "mixed" : "double", f->device);
+    char effects[128];
+    name_effects(options->effects, effects, sizeof effects);
+    printf("Settled bed of %lld grains%s%s%s in %s precision on %s\n", (long long)f->particles, effects[0] ? " with " : "", effects,
+           effects[0] ? "," : "", options->mixed ? "mixed" : "double", f->device);
     printf("  %-28s%.4g million (%.4g ns each)\n", "particle-steps a second", 1e-6 * f->particle_steps_per_s,
            1e9 / f->particle_steps_per_s);
     printf("  %-28s%.4g s for %lld steps\n", "wall time", f->wall_s, (long long)f->steps);
@@ -180,9 +195,11 @@ static void print_figures(const bench_figures *f, const bench_options *options)
 
 static status write_json(const bench_figures *f, const bench_options *options, failure *why)
 {
-    json_t *root = json_pack("{s:s, s:s, s:I, s:I, s:f, s:b, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f}", "device", f->device, "precision", options->mixed ? "mixed" : "double",
+    char effects[128];
+    name_effects(options->effects, effects, sizeof effects);
+    json_t *root = json_pack("{s:s, s:s, s:I, s:I, s:f, s:b, s:s, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f}", "device", f->device, "precision", options->mixed ? "mixed" : "double",
                              "particles", (json_int_t)f->particles, "steps", (json_int_t)f->steps, "step_s", STEP_S, "rolling",
-                             options->rolling, "wall_s", f->wall_s, "particle_steps_per_s", f->particle_steps_per_s, "bytes_per_particle",
+                             (int)(options->effects & BED_ROLLING), "effects", effects, "wall_s", f->wall_s, "particle_steps_per_s", f->particle_steps_per_s, "bytes_per_particle",
                              f->bytes_per_particle, "rebuilds", (json_int_t)f->rebuilds, "rebuild_s", f->rebuild_s, "pair_stage_s",
                              f->pair_s, "particle_stage_s", f->particle_s, "contacts_per_particle", f->contacts_per_particle,
                              "records_per_particle", f->records_per_particle, "kinetic_energy_j", f->kinetic_j);
@@ -210,7 +227,7 @@ static status run_bench(const bench_options *options, device *device, bench_figu
 {
     settled_bed of;
     simulation *sim = NULL;
-    TRY(settled_bed_make(options->particles, options->rolling, device, options->kernels, &of, why));
+    TRY(settled_bed_make(options->particles, options->effects, device, options->kernels, &of, why));
     status result = options->export_path ? export_bed(&of, options->export_path, why) : STATUS_OK;
     of.scene->precision = options->mixed ? PRECISION_MIXED : PRECISION_DOUBLE;
     if (result == STATUS_OK)

@@ -8,7 +8,7 @@
 typedef struct bench_options {
     int64_t particles;
     int64_t steps;           /* that are timed; 0: as many as suit the number of particles */
-    bool rolling;            /* with rolling resistance */
+    unsigned effects;        /* BED_* (host/settled_bed.h), on top of contact and friction */
     bool mixed;              /* in mixed precision */
     const char *export_path; /* the bed as CSV, or NULL */
     const char *json_path;   /* the figures as JSON, or NULL */

@@ -63,38 +63,48 @@ bed_layout settled_bed_layout(int64_t particles)
 
 /* ---- the scene ---- */
 
-static void print_walls(FILE *out, double x, double y)
+const char bed_effect_words[] = "rolling|conduction|convection|radiation";
+
+static void print_walls(FILE *out, double x, double y, bool hot)
 {
-    fprintf(out, "walls:\n"
-                 "  - {name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}\n"
-                 "  - {name: west, shape: plane, point_m: [0, 0, 0], normal: [1, 0, 0]}\n"
+    fprintf(out, "walls:\n  - {name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]%s}\n", hot ? ", temperature_k: 400" : "");
+    fprintf(out, "  - {name: west, shape: plane, point_m: [0, 0, 0], normal: [1, 0, 0]}\n"
                  "  - {name: south, shape: plane, point_m: [0, 0, 0], normal: [0, 1, 0]}\n");
     fprintf(out, "  - {name: east, shape: plane, point_m: [%.17g, 0, 0], normal: [-1, 0, 0]}\n", x);
     fprintf(out, "  - {name: north, shape: plane, point_m: [0, %.17g, 0], normal: [0, -1, 0]}\n", y);
 }
 
-static void print_scene(FILE *out, int64_t particles, double x, double y, double height, bool rolling, bool settling, bool slippery)
+static void print_scene(FILE *out, int64_t particles, double x, double y, double height, unsigned effects, bool settling, bool slippery)
 {
     static const char *const sides[] = {"west", "south", "east", "north"};
     fprintf(out, "title: Settled bed\ngravity_m_s2: [0, 0, -%g]\neffects:\n", GRAVITY);
     fprintf(out, "  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin}\n");
-    if (rolling)
+    if (effects & BED_ROLLING)
         fprintf(out, "  - {slot: rolling, law: elastic_plastic}\n");
+    if (effects & BED_CONDUCTION)
+        fprintf(out, "  - {slot: conduction, law: overlap_area}\n");
+    if (effects & BED_CONVECTION)
+        fprintf(out, "  - {slot: convection, law: newton, coefficient_w_m2k: 50}\n");
+    if (effects & BED_RADIATION)
+        fprintf(out, "  - {slot: radiation, law: stefan_boltzmann}\n");
     if (settling)
         fprintf(out, "  - {slot: body, law: viscous_damping, coefficient: %g}\n", SETTLE_DAMPING);
-    fprintf(out, "materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3}]\ninteractions:\n");
+    if (effects & (BED_CONVECTION | BED_RADIATION))
+        fprintf(out, "environment: {temperature_k: 350}\n");
+    fprintf(out, "materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3, conductivity_w_mk: 1,\n"
+                 "             specific_heat_j_kgk: 800, emissivity: 0.9}]\ninteractions:\n");
     fprintf(out, "  - {between: default, restitution: 0.5, friction_static: 0.5, rolling_friction: 0.01}\n");
     for (int s = 0; s < 4 && slippery; s++)
         fprintf(out, "  - {between: [glass, %s], friction_static: 0}\n", sides[s]);
-    fprintf(out, "particles:\n  - {name: bed, material: glass, generator: random, count: %lld,\n", (long long)particles);
+    fprintf(out, "particles:\n  - {name: bed, material: glass, generator: random, count: %lld, temperature_k: 300,\n", (long long)particles);
     fprintf(out, "     radius_m: {distribution: uniform, low: %.17g, high: %.17g},\n", RADIUS_M * (1.0 - RADIUS_SPREAD),
             RADIUS_M * (1.0 + RADIUS_SPREAD));
     fprintf(out, "     region: {low_m: [0, 0, 0], high_m: [%.17g, %.17g, %.17g]}}\n", x, y, height);
-    print_walls(out, x, y);
+    print_walls(out, x, y, effects & BED_CONDUCTION);
     fprintf(out, "stages: [{name: rest, until: {steps: 1}}]\n");
 }
 
-static status make_scene(int64_t particles, double x, double y, double height, bool rolling, bool settling, bool slippery, scene **out,
+static status make_scene(int64_t particles, double x, double y, double height, unsigned effects, bool settling, bool slippery, scene **out,
                          failure *why)
 {
     char *text = NULL;
@@ -102,7 +112,7 @@ static status make_scene(int64_t particles, double x, double y, double height, b
     FILE *stream = open_memstream(&text, &size);
     if (!stream)
         return fail(why, STATUS_ERROR, "out of memory");
-    print_scene(stream, particles, x, y, height, rolling, settling, slippery);
+    print_scene(stream, particles, x, y, height, effects, settling, slippery);
     fclose(stream);
     status result = scene_read_text(text, "settled bed", 0, NULL, out, why);
     free(text);
@@ -151,7 +161,7 @@ static status pour(const bed_layout *l, device *device, const char *kernels, bed
     scene *poured = NULL;
     simulation *sim = NULL;
     bool slippery = l->columns * l->rows > 1;
-    TRY(make_scene(l->part, l->part_x, l->part_y, l->height, false, true, slippery, &poured, why));
+    TRY(make_scene(l->part, l->part_x, l->part_y, l->height, 0, true, slippery, &poured, why));
     if (!device->info.fp64)
         poured->precision = PRECISION_MIXED;
     status result = bed_generate(poured, out, why);
@@ -286,7 +296,7 @@ static void place_image(const bed_layout *l, const bed *part, int64_t i, int col
     out->spin[to][1] = mx * w[1];
     out->spin[to][2] = mx * my * w[2];
     out->radius[to] = part->radius[i];
-    out->temperature[to] = NAN;
+    out->temperature[to] = 300.0;
 }
 
 status settled_bed_assemble(const bed_layout *l, const bed *part, int64_t particles, bed *out, failure *why)
@@ -310,7 +320,7 @@ status settled_bed_assemble(const bed_layout *l, const bed *part, int64_t partic
     return STATUS_OK;
 }
 
-status settled_bed_make(int64_t particles, bool rolling, device *device, const char *kernels, settled_bed *out, failure *why)
+status settled_bed_make(int64_t particles, unsigned effects, device *device, const char *kernels, settled_bed *out, failure *why)
 {
     *out = (settled_bed){0};
     if (particles < SETTLED_BED_LEAST || particles > INT32_MAX)
@@ -322,7 +332,7 @@ status settled_bed_make(int64_t particles, bool rolling, device *device, const c
     status result = settled_bed_assemble(&l, &part, particles, &out->bed, why);
     bed_free(&part);
     if (result == STATUS_OK)
-        result = make_scene(particles, l.side, l.side, l.height, rolling, false, false, &out->scene, why);
+        result = make_scene(particles, l.side, l.side, l.height, effects, false, false, &out->scene, why);
     out->side_m = l.side;
     if (result != STATUS_OK)
         settled_bed_free(out);

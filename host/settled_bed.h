@@ -7,6 +7,14 @@
 
 #define SETTLED_BED_LEAST 100
 
+/* What the scene has on top of contact and friction. */
+#define BED_ROLLING    1u
+#define BED_CONDUCTION 2u /* with a hot floor */
+#define BED_CONVECTION 4u
+#define BED_RADIATION  8u
+/* Their words in that order, "rolling|conduction|...". */
+extern const char bed_effect_words[];
+
 typedef struct settled_bed {
     bed bed;
     double side_m; /* of the box */
@@ -15,7 +23,7 @@ typedef struct settled_bed {
 
 /* Takes the bed from the cache, or makes it: small ones are poured and come to rest, large ones are put together from mirror images of a
  * part with that height. Progress goes to standard error. */
-status settled_bed_make(int64_t particles, bool rolling, device *device, const char *kernels, settled_bed *out, failure *why);
+status settled_bed_make(int64_t particles, unsigned effects, device *device, const char *kernels, settled_bed *out, failure *why);
 void settled_bed_free(settled_bed *bed);
 
 /* How the bed is put together: columns by rows of mirror images of one part. */

@@ -1,12 +1,14 @@
 /* clast bench */
 #include "../bench.h"
 #include "../parameter.h"
+#include "../settled_bed.h"
 #include "../scene.h"
 #include "command.h"
 
+#include <stdio.h>
 #include <string.h>
 
-enum { KEY_PRECISION = 256, KEY_ROLLING, KEY_EXPORT, KEY_JSON };
+enum { KEY_PRECISION = 256, KEY_ROLLING, KEY_EFFECTS, KEY_EXPORT, KEY_JSON };
 
 typedef struct bench_input {
     const char *what;
@@ -25,6 +27,20 @@ static void check_what(const struct argp_state *state, const char *what)
     if (nearest && strcmp(nearest, what) == 0)
         option_refuse(state, "the benchmark `%s` is not in this version, which has `bed`", what);
     option_refuse(state, "there is no benchmark `%s`; this version has `bed`", what);
+}
+
+static void read_effects_option(const struct argp_state *state, const char *argument, unsigned *effects)
+{
+    for (const char *word = argument; *word;) {
+        size_t length = strcspn(word, ",");
+        char one[32];
+        snprintf(one, sizeof one, "%.*s", (int)(length < sizeof one ? length : sizeof one - 1), word);
+        int index = words_find(bed_effect_words, one);
+        if (index < 0)
+            option_refuse(state, "--effects: there is no effect `%s`; this version has rolling, conduction, convection and radiation", one);
+        *effects |= 1u << index;
+        word += length + (word[length] == ',');
+    }
 }
 
 static error_t parse_bench(int key, char *argument, struct argp_state *state)
@@ -46,8 +62,11 @@ static error_t parse_bench(int key, char *argument, struct argp_state *state)
             option_refuse(state, "--precision: `%s` is none of auto, double, mixed", argument);
         input->options.mixed = found == PRECISION_MIXED;
         return 0;
+    case KEY_EFFECTS:
+        read_effects_option(state, argument, &input->options.effects);
+        return 0;
     case KEY_ROLLING:
-        input->options.rolling = true;
+        input->options.effects |= BED_ROLLING;
         return 0;
     case KEY_EXPORT:
         input->options.export_path = argument;
@@ -71,6 +90,7 @@ static const struct argp_option bench_option[] = {
     {"steps", 'S', "STEPS", 0, "Steps that are timed, after 200 of warm-up", 0},
     {"precision", KEY_PRECISION, "P", 0, "auto, double or mixed", 0},
     {"rolling", KEY_ROLLING, NULL, 0, "With rolling resistance", 0},
+    {"effects", KEY_EFFECTS, "A,B,...", 0, "With these on top of contact and friction, of rolling, conduction, convection, radiation", 0},
     {"export", KEY_EXPORT, "FILE.csv", 0, "Write the bed as it is before the warm-up", 0},
     {"json", KEY_JSON, "FILE.json", 0, "Write the figures as JSON", 0},
     {0},
