@@ -35,6 +35,8 @@ bool heat_varies(const simulation *sim)
     bool varies = false;
     if (!sim->all.law[SLOT_TEMPERATURE])
         return false;
+    if (beams_vary(sim))
+        return true;
     if (sim->live.law[SLOT_ENVIRONMENT])
         varies = quantity_varies_in_time(&s->environment.temperature_k) || quantity_varies_in_time(&s->environment.gas_velocity_m_s);
     for (int w = 0; sim->live.law[SLOT_WALL_HEAT] && w < s->wall_count; w++)
@@ -64,6 +66,7 @@ status heat_create(simulation *sim, failure *why)
     const scene *s = scene_of(sim);
     if (!sim->all.law[SLOT_TEMPERATURE])
         return STATUS_OK;
+    TRY(beams_create(sim, why));
     uint64_t constants = store_item(sim, FIELD_REAL) * (uint64_t)(live_grain_constant_count(&sim->all) * s->material_count);
     TRY(store_buffer(sim, &h->constants, constants, "constants of materials", why));
     if (sim->all.law[SLOT_WALL_HEAT] == &law_wall_flux)
@@ -97,6 +100,7 @@ static void release_rows(simulation *sim)
 void heat_free(simulation *sim)
 {
     release_rows(sim);
+    beams_free(sim);
     store_release(sim, &sim->heat.constants, 0);
     store_release(sim, &sim->heat.profile, 0);
     store_release(sim, &sim->heat.areas, 0);
@@ -119,6 +123,7 @@ status heat_fit_rows(simulation *sim, int rows, failure *why)
         return STATUS_OK;
     release_rows(sim);
     h->rows = rows;
+    TRY(beams_fit_rows(sim, rows, why));
     uint64_t environments = sim->all.law[SLOT_ENVIRONMENT] ? (uint64_t)rows : 0;
     TRY(fit_array(sim, &h->environment, (void **)&h->environment_rows, sizeof *h->environment_rows * environments, "the environment", why));
     TRY(fit_array(sim, &h->walls, (void **)&h->wall_rows, sizeof *h->wall_rows * (uint64_t)(faces_of(sim) * rows), "heat of walls", why));
@@ -166,6 +171,7 @@ void heat_fill_row(simulation *sim, int row, double time)
 {
     heat_tables *h = &sim->heat;
     const scene *s = scene_of(sim);
+    beams_fill_row(sim, row, time);
     if (h->environment_rows)
         h->environment_rows[row] = environment_row(s, time);
     for (int w = 0, face = 0; h->wall_rows && w < s->wall_count; w++)
@@ -192,6 +198,7 @@ status heat_write_rows(simulation *sim, int rows, failure *why)
     heat_tables *h = &sim->heat;
     if (sim->mixed)
         split_rows(sim, rows);
+    TRY(beams_write_rows(sim, rows, why));
     if (h->environment_rows)
         TRY(store_write(sim, h->environment, 0, sizeof *h->environment_rows * (uint64_t)rows, h->environment_rows, why));
     if (h->wall_rows)

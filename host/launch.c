@@ -35,6 +35,9 @@ static const stage_list stage_lists[] = {
     {"heat_frozen_findings", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_frozen_accept", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_frozen_spectrum", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"beam_bounds", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"beam_surface", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"beam_depth", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_sums", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
 };
 
@@ -85,7 +88,9 @@ static cl_mem named_buffer(simulation *sim, const char *name)
                {"profile", sim->heat.profile},
                {"wall_heat", sim->heat.walls},
                {"wall_area", sim->heat.areas},
-               {"group_heat", sim->heat.groups}};
+               {"group_heat", sim->heat.groups},
+               {"beams", sim->beams.device_rows},
+               {"beam_meets", sim->beams.meets}};
     for (size_t n = 0; n < sizeof own / sizeof *own; n++)
         if (strcmp(own[n].name, name) == 0)
             return own[n].mem;
@@ -144,6 +149,8 @@ static bool has_kernel(const simulation *sim, const char *name)
         return sim->live.law[SLOT_WALL_HEAT] == &law_wall_flux;
     if (strncmp(name, "heat_frozen_", 12) == 0)
         return sim->live.frozen;
+    if (strncmp(name, "beam_", 5) == 0)
+        return sim->live.law[SLOT_SOURCE] != NULL;
     if (strncmp(name, "heat_", 5) == 0)
         return sim->live.law[SLOT_TEMPERATURE] != NULL;
     if (strstr(name, "_bond_"))
@@ -168,7 +175,8 @@ status launch_open(simulation *sim, failure *why)
                                         "particle_synchronise", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
                                         "heat_conductances", "heat_limit", "heat_sums", "heat_areas",
                                         "heat_frozen_given", "heat_frozen_links", "heat_frozen_stage", "heat_frozen_error",
-                                        "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_spectrum"};
+                                        "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_spectrum",
+                                        "beam_bounds", "beam_surface", "beam_depth"};
     sim->kernel_count = 0;
     for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
         if (!has_kernel(sim, names[n]))

@@ -8,7 +8,7 @@
 const law *const laws[] = {&law_hertz,        &law_linear,        &law_mindlin, &law_coulomb_linear, &law_elastic_plastic,
                            &law_constant_torque, &law_power, &law_adhesion, &law_parallel, &law_local_damping, &law_viscous_damping, &law_overlap_area,
                            &law_batchelor_obrien, &law_pipe_network, &law_newton,
-                           &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, NULL};
+                           &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, &law_laser, &law_burner, NULL};
 
 static const struct {
     const char *name;
@@ -22,7 +22,7 @@ static const struct {
     [SLOT_LEDGER] = {"ledger", false},           [SLOT_WALLS] = {"walls", false},
     [SLOT_TEMPERATURE] = {"temperature", false}, [SLOT_SUBSTANCE] = {"substance", false},   [SLOT_CONDUCTION] = {"conduction", true},
     [SLOT_WALL_HEAT] = {"wall_heat", false},     [SLOT_ENVIRONMENT] = {"environment", false}, [SLOT_CONVECTION] = {"convection", true},
-    [SLOT_RADIATION] = {"radiation", true},      [SLOT_SOURCE] = {"source", false},         [SLOT_HEAT_GENERATION] = {"heat_generation", true},
+    [SLOT_RADIATION] = {"radiation", true},      [SLOT_SOURCE] = {"source", true},         [SLOT_HEAT_GENERATION] = {"heat_generation", true},
     [SLOT_THERMAL_GROUPS] = {"thermal_groups", false}, [SLOT_HEAT_TALLY] = {"heat_tally", false},
     [SLOT_BODY] = {"body", true},                [SLOT_ORIENTATION] = {"orientation", false}, [SLOT_INTEGRATOR] = {"integrator", false},
 };
@@ -58,7 +58,7 @@ const property *const *material_properties(void)
     static const property *const all[] = {&property_density, &property_youngs_modulus, &property_poissons_ratio,
                                           &property_conductivity, &property_specific_heat,
                                           &property_film_thickness, &property_film_conductivity, &property_real_modulus,
-                                          &property_emissivity, &property_heat_generation, NULL};
+                                          &property_emissivity, &property_absorptance, &property_heat_generation, NULL};
     return all;
 }
 

@@ -104,6 +104,8 @@ static void derive_heat(const scene *scene, live_laws *out)
     bool profile = (e->temperature_k.given && e->temperature_k.kind == QUANTITY_AXIS) ||
                    (e->gas_velocity_m_s.given && e->gas_velocity_m_s.kind == QUANTITY_AXIS);
     out->law[SLOT_TEMPERATURE] = temperature_law(out);
+    if (out->law[SLOT_SOURCE])
+        out->law[SLOT_SOURCE] = law_of_beams(scene);
     if (scene->material_count > 1)
         out->law[SLOT_SUBSTANCE] = &law_substance_several;
     if (out->law[SLOT_CONDUCTION] && any_wall_heat(scene, WALL_HEAT_TEMPERATURE))
@@ -221,6 +223,8 @@ int live_files(const live_laws *live, const char **files, int max)
         files[count++] = "stage/heat_areas.cl";
     if (live->frozen && count < max)
         files[count++] = "stage/frozen.cl";
+    if (live->law[SLOT_SOURCE] && count < max)
+        files[count++] = "stage/beam.cl";
     return count;
 }
 

@@ -76,7 +76,7 @@ static status list_fields(output *o, failure *why)
 
 static bool is_of_heat(const char *name)
 {
-    return strncmp(name, "temperature_", 12) == 0 || strcmp(name, "thermal_energy") == 0 || strncmp(name, "heat_", 5) == 0;
+    return strncmp(name, "temperature_", 12) == 0 || strcmp(name, "thermal_energy") == 0 || strncmp(name, "heat_", 5) == 0 || strcmp(name, "source_absorbed") == 0;
 }
 
 static bool wall_heat_is_written(const simulation *sim)
@@ -240,6 +240,7 @@ typedef struct measured {
     double stress[9];
     heat_sums heat;
     double ledger[LEDGER_TERMS];
+    double source_delivered;
 } measured;
 
 static double bed_volume(const simulation *sim)
@@ -278,7 +279,9 @@ static int put_observable(const output *o, const char *name, const measured *m, 
                    {"heat_sources", m->heat.tally[CLAST_TALLY_SOURCES]},
                    {"heat_convection", m->heat.tally[CLAST_TALLY_CONVECTION]},
                    {"heat_radiation", m->heat.tally[CLAST_TALLY_RADIATION]},
-                   {"heat_walls", m->heat.tally[CLAST_TALLY_WALLS]}};
+                   {"heat_walls", m->heat.tally[CLAST_TALLY_WALLS]},
+                   {"source_absorbed", m->heat.tally[CLAST_TALLY_ABSORBED]},
+                   {"source_delivered", m->source_delivered}};
     for (size_t s = 0; s < sizeof scalars / sizeof *scalars; s++)
         if (strcmp(scalars[s].name, name) == 0) {
             *to = scalars[s].value;
@@ -336,6 +339,7 @@ status output_observe(output *o, failure *why)
         TRY(heat_observe(o->sim, &m.heat, why));
     if (o->sim->all.law[SLOT_LEDGER])
         TRY(ledger_read(o->sim, m.ledger, why));
+    m.source_delivered = o->sim->beams.delivered;
     double *to = o->value;
     for (int k = 0; k < o->sim->scene->output.observable_count; k++)
         to += put_observable(o, o->observable[k].name, &m, to);

@@ -74,6 +74,22 @@ void precision_split_profiles(clast_profile *profile, int count, const double *o
     }
 }
 
+void precision_split_beams(clast_beam *beam, int64_t count, const double *origin)
+{
+    for (int64_t b = 0; b < count; b++) {
+        move(beam[b].position, origin);
+        precision_split(beam + b, NUMBERS(clast_beam, law));
+    }
+}
+
+void precision_split_columns(clast_columns *columns, int64_t count, const double *origin)
+{
+    for (int64_t c = 0; c < count; c++) {
+        move(columns[c].origin, origin);
+        precision_split(columns + c, NUMBERS(clast_columns, first_u));
+    }
+}
+
 void precision_split_grid(clast_grid *grid, const double *origin)
 {
     move(grid->origin, origin);

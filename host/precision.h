@@ -12,6 +12,8 @@ void precision_split_launch(clast_launch *launch);
 void precision_split_faces(clast_face *face, int64_t count, const double *origin);
 void precision_split_movers(clast_mover *mover, int64_t count, const double *origin);
 void precision_split_profiles(clast_profile *profile, int count, const double *origin);
+void precision_split_beams(clast_beam *beam, int64_t count, const double *origin);
+void precision_split_columns(clast_columns *columns, int64_t count, const double *origin);
 void precision_split_grid(clast_grid *grid, const double *origin);
 
 #endif

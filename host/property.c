@@ -15,6 +15,7 @@ const property property_film_conductivity = {"film_conductivity_w_mk", 0, 1e6, t
 const property property_real_modulus = {"real_modulus_pa", 0, 1e15, true, NAN, NULL,
                                         "Young's modulus of the real material, where `youngs_modulus_pa` is softer; for `soft_modulus`"};
 const property property_emissivity = {"emissivity", 0, 1, false, NAN, NULL, "emissivity of the surface"};
+const property property_absorptance = {"absorptance", 0, 1, false, NAN, NULL, "share of a beam's heat that a grain takes up"};
 const property property_heat_generation = {"heat_generation_w_m3", 0, 1e15, false, NAN, NULL, "heat made in each volume of the grains"};
 
 const property property_gas_conductivity = {"conductivity_w_mk", 0, 1e6, true, NAN, NULL, "thermal conductivity of the gas"};

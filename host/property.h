@@ -4,7 +4,7 @@
 #include "law.h"
 
 extern const property property_density, property_youngs_modulus, property_poissons_ratio, property_conductivity, property_specific_heat;
-extern const property property_film_thickness, property_film_conductivity, property_real_modulus, property_emissivity, property_heat_generation;
+extern const property property_film_thickness, property_film_conductivity, property_real_modulus, property_emissivity, property_absorptance, property_heat_generation;
 extern const property property_gas_conductivity, property_gas_specific_heat, property_gas_viscosity, property_gas_density;
 extern const property property_restitution, property_normal_damping, property_tangential_damping, property_rolling_damping;
 extern const property property_friction_static, property_friction_dynamic, property_rolling_friction;

@@ -230,8 +230,11 @@ void scene_free(scene *s)
 {
     if (!s)
         return;
-    for (int k = 0; k < s->effect_count; k++)
+    for (int k = 0; k < s->effect_count; k++) {
         free(s->effect[k].name);
+        quantity_free(&s->effect[k].beam.position);
+        quantity_free(&s->effect[k].beam.power);
+    }
     for (int k = 0; k < s->material_count; k++) {
         free(s->material[k].name);
         free(s->material[k].value);

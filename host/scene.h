@@ -25,12 +25,6 @@ typedef struct domain {
     bool delete_leaving;
 } domain;
 
-typedef struct effect {
-    const law *law;
-    char *name; /* of a source, else NULL */
-    double option[LAW_OPTIONS_MAX];
-    place at;
-} effect;
 
 typedef struct material {
     char *name;
@@ -57,6 +51,20 @@ typedef struct quantity {
     double *at;    /* s or m, rising */
     double *value; /* [count][components] */
 } quantity;
+
+/* Path of a source's beam: tables in time. */
+typedef struct beam {
+    double direction[3]; /* unit vector */
+    quantity position, power;
+} beam;
+
+typedef struct effect {
+    const law *law;
+    char *name; /* of a source, else NULL */
+    double option[LAW_OPTIONS_MAX];
+    beam beam; /* of a source */
+    place at;
+} effect;
 
 /* Value at a time or a place; NAN where the quantity is not given. */
 double quantity_at(const quantity *q, double x);
@@ -274,6 +282,12 @@ const effect *scene_effect(const scene *scene, int stage, slot_id slot);
 
 /* Gravity in a stage (-1: the scene's own): changes stay in force until the next one. */
 void scene_gravity(const scene *scene, int stage, double gravity_m_s2[3]);
+
+/* Sources: how many; one of them; which direction of beams it belongs to; how many directions there are (host/beams.c). */
+int scene_beam_count(const scene *scene);
+const effect *scene_beam(const scene *scene, int index);
+int scene_beam_side(const scene *scene, int index);
+int scene_beam_sides(const scene *scene);
 
 /* A thermal law is listed; grains have a temperature; what each path of heat brings is kept. */
 bool scene_has_heat(const scene *scene);

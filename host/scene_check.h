@@ -6,6 +6,8 @@
 status scene_check(reader *r);
 status check_frozen_stage(reader *r, int stage);
 status scene_check_heat(reader *r);
+/* Names of sources, and the directions of their beams. */
+status scene_check_sources(reader *r);
 status check_wall_heat(reader *r, int node, const wall_heat *heat);
 
 #endif

@@ -43,11 +43,11 @@ bool scene_has_temperature(const scene *s)
 
 bool scene_tallies_heat(const scene *s)
 {
-    static const char *const names[] = {"heat_sources", "heat_convection", "heat_radiation", "heat_walls"};
+    static const char *const names[] = {"heat_sources", "heat_convection", "heat_radiation", "heat_walls", "source_absorbed"};
     for (size_t k = 0; k < sizeof names / sizeof *names; k++)
         if (scene_outputs(s, names[k]))
             return true;
-    return false;
+    return scene_effect(s, -1, SLOT_SOURCE) != NULL; /* a run reports how much its beams bring */
 }
 
 static bool says_something(const wall_heat *heat)
@@ -180,6 +180,7 @@ status scene_check_heat(reader *r)
     TRY(check_thermal_groups(r));
     TRY(check_environment(r));
     TRY(check_conduction(r));
+    TRY(scene_check_sources(r));
     for (int m = 0; m < s->material_count && scene_has_temperature(s); m++)
         if (isnan(scene_material(s, m, &property_specific_heat)))
             return document_fail(r->document, document_at(r->document, "materials[%d]", m), r->why,

@@ -6,7 +6,9 @@
 extern const section scene_section, domain_section, effect_section, material_section, interaction_section, group_section, region_section,
     item_section, radius_section, wall_section, motion_section, stage_section, until_section, change_section, wall_change_section,
     group_change_section, output_section, table_section, guard_section, study_section, environment_section, gas_section, quantity_section,
-    stage_heat_section;
+    stage_heat_section, path_section;
+/* Keys of every source besides its law's options; ends with a NULL key. */
+extern const parameter beam_rows[];
 
 /* A per-particle field or an observable that `output:` may list. */
 typedef struct output_name {

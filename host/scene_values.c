@@ -187,13 +187,14 @@ static status read_effect(reader *r, int node, effect *out)
     TRY(read_slot(r, slot_node, &slot));
     TRY(required_key(r, node, "law", "which law fills the slot", &law_node));
     TRY(read_law(r, slot, law_node, &out->law));
-    parameter rows[LAW_OPTIONS_MAX + 4] = {
+    parameter rows[LAW_OPTIONS_MAX + 6] = {
         {.key = "slot", .type = PARAMETER_OTHER, .read = ignore_value, .keep = true},
         {.key = "law", .type = PARAMETER_OTHER, .read = ignore_value, .keep = true},
         {.key = "name", .type = PARAMETER_NAME, .offset = offsetof(effect, name)},
     };
     char fallback[LAW_OPTIONS_MAX][32];
-    for (int k = 0; k < LAW_OPTIONS_MAX && out->law->options[k].key; k++) {
+    int k = 0;
+    for (; k < LAW_OPTIONS_MAX && out->law->options[k].key; k++) {
         const law_option *option = &out->law->options[k];
         snprintf(fallback[k], sizeof fallback[k], "%.17g", option->fallback);
         rows[3 + k] = (parameter){.key = option->key,
@@ -208,6 +209,8 @@ static status read_effect(reader *r, int node, effect *out)
                                   .unit = parameter_unit(option->key),
                                   .offset = offsetof(effect, option) + (size_t)k * sizeof(double)};
     }
+    for (int n = 0; slot == SLOT_SOURCE && beam_rows[n].key; n++)
+        rows[3 + k++] = beam_rows[n];
     char name[128];
     snprintf(name, sizeof name, "%s effect with the law `%s`", slot_name(slot), out->law->name);
     const section one = {.name = name, .row = rows, .placed = true, .at = offsetof(effect, at)};
@@ -225,7 +228,7 @@ status read_effects(reader *r, const parameter *row, int node, void *target)
         int item = document_item(r->document, node, k);
         TRY(read_effect(r, item, &s->effect[k]));
         for (int j = 0; j < k; j++)
-            if (s->effect[j].law->slot == s->effect[k].law->slot)
+            if (s->effect[j].law->slot == s->effect[k].law->slot && s->effect[k].law->slot != SLOT_SOURCE)
                 return document_fail(r->document, item, r->why, "the slot `%s` is filled twice, by `%s` and by `%s`; keep one",
                                      slot_name(s->effect[k].law->slot), s->effect[j].law->name, s->effect[k].law->name);
     }

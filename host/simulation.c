@@ -534,7 +534,8 @@ status simulation_begin_stage(simulation *sim, int stage, failure *why)
     change_bodies(sim, &sim->scene->stage[stage]);
     TRY(upload_movers(sim, why));
     TRY(begin_half_steps(sim, why));
-    return simulation_enter_stage(sim, stage, why);
+    TRY(simulation_enter_stage(sim, stage, why));
+    return beams_find_depths(sim, why);
 }
 
 /* ---- steps ---- */
@@ -654,6 +655,7 @@ static status run_batch(simulation *sim, int steps, int *done, bool *rebuild, fa
 {
     clast_control control = {steps, 0, {0, 0}};
     int bonding = bonds_step(sim, steps);
+    TRY(beams_before_batch(sim, why));
     if (sim->walls_move || sim->groups_move || sim->heat.vary)
         TRY(write_rows(sim, steps, why));
     TRY(store_write(sim, sim->control, 0, sizeof control, &control, why));
@@ -662,6 +664,8 @@ static status run_batch(simulation *sim, int steps, int *done, bool *rebuild, fa
     *done = control.halt_step < steps ? control.halt_step : steps;
     sim->bonding_done = sim->bonding_done || (bonding >= 0 && bonding < *done);
     *rebuild = control.reason != 0;
+    for (int s = 0; s < *done; s++)
+        beams_deliver(sim, time_after(sim, s), sim->dt);
     return STATUS_OK;
 }
 
@@ -669,7 +673,7 @@ status simulation_advance(simulation *sim, int64_t steps, failure *why)
 {
     double start = seconds(), rebuilding = sim->rebuild_seconds;
     while (steps > 0) {
-        int64_t most = sim->batch_limit < steps ? sim->batch_limit : steps;
+        int64_t most = beams_steps_allowed(sim, sim->batch_limit < steps ? sim->batch_limit : steps);
         int allowed = steps_before_walls(sim, (int)most), done = 0;
         bool rebuild = allowed == 0;
         if (allowed == 0 && sim->step == sim->rebuild_step && sim->table.built)

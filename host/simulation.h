@@ -83,6 +83,16 @@ typedef struct frozen_heat {
     double limit, hottest; /* limit of Euler's method, s, for surfaces up to this temperature; NAN: not yet known */
     int64_t rejected;
 } frozen_heat;
+/* Beams of the sources, and the columns in which the bed's surface is looked for. */
+typedef struct beam_tables {
+    int count, sides, row_count;
+    int64_t interval; /* steps between two searches for the surface */
+    clast_beam *rows; /* by row and beam */
+    clast_columns columns[CLAST_BEAM_SIDES_MAX];
+    cl_mem device_rows, device_columns, bounds, surface, meets;
+    int64_t surface_held;
+    double delivered; /* J */
+} beam_tables;
 
 typedef struct simulation {
     const scene *scene;
@@ -116,6 +126,7 @@ typedef struct simulation {
     uint64_t face_bytes, mover_bytes;
     heat_tables heat;
     frozen_heat frozen;
+    beam_tables beams;
     int32_t *group_of_id;
     bool *group_held;        /* by group: held or moved as prescribed, now */
     int64_t batch_limit;     /* steps a batch, now */
@@ -267,6 +278,25 @@ typedef struct heat_sums {
 } heat_sums;
 status heat_observe(simulation *sim, heat_sums *out, failure *why);
 status heat_limit_find(simulation *sim, heat_limit *out, failure *why);
+
+/* beams.c: all do nothing where no source is live */
+status beams_create(simulation *sim, failure *why);
+void beams_free(simulation *sim);
+/* Some beam moves or changes its power. */
+bool beams_vary(const simulation *sim);
+status beams_fit_rows(simulation *sim, int rows, failure *why);
+void beams_fill_row(simulation *sim, int row, double time);
+status beams_write_rows(simulation *sim, int rows, failure *why);
+/* Counts what the beams deliver in the step of length dt that starts at `time`. */
+void beams_deliver(simulation *sim, double time, double dt);
+/* Finds how deep every grain lies, now. */
+status beams_find_depths(simulation *sim, failure *why);
+/* Steps that a batch may take before depths are due; and what is due before it. */
+int64_t beams_steps_allowed(const simulation *sim, int64_t steps);
+status beams_before_batch(simulation *sim, failure *why);
+/* Which beams have met a grain so far. */
+status beams_met(simulation *sim, bool *met, failure *why);
+
 /* bonds.c */
 typedef struct bond_sums {
     int64_t made, broken, alive;

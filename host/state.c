@@ -136,6 +136,8 @@ status state_save(simulation *sim, bundle *out, failure *why)
     bundle_add_i64(out, "run/bonding_done", sim->bonding_done);
     bundle_add_i64(out, "run/mixed", sim->mixed);
     bundle_add(out, "run/origin", BUNDLE_F64, 3, 1, sim->origin);
+    if (sim->all.law[SLOT_SOURCE])
+        bundle_add_f64(out, "run/delivered", sim->beams.delivered);
     save_bodies(sim->wall_body, sim->scene->wall_count, "bodies/walls", out);
     save_bodies(sim->group_body, sim->scene->group_count, "bodies/groups", out);
     int32_t *held = bundle_add(out, "bodies/held", BUNDLE_I32, sim->scene->group_count, 1, NULL);
@@ -345,6 +347,8 @@ static status load_run(simulation *sim, const bundle *in, const char *path, int6
                     path, mixed ? "mixed" : "double", sim->mixed ? "mixed" : "double");
     TRY(bundle_get(in, path, "run/origin", BUNDLE_F64, 3, 1, &origin, why));
     memcpy(sim->origin, origin->data, sizeof sim->origin);
+    if (sim->all.law[SLOT_SOURCE])
+        TRY(load_number(in, path, "run/delivered", BUNDLE_F64, &sim->beams.delivered, NULL, why));
     if (*stage < 0 || *stage >= sim->scene->stage_count)
         return fail(why, STATUS_BAD_INPUT, "%s: run/stage is %lld, the scene has %d stages; the checkpoint is of another scene", path, (long long)*stage,
                     sim->scene->stage_count);

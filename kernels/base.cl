@@ -187,5 +187,5 @@ typedef struct grain {
 /* Heat that a grain gains, by path: W, or J over a step. */
 typedef struct grain_heat {
     real contacts; /* all of them, walls included */
-    real walls, sources, convection, radiation;
+    real walls, sources, convection, radiation, absorbed; /* absorbed: of the sources' that of beams */
 } grain_heat;

@@ -25,3 +25,7 @@ const field field_bonded = {"bonded", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, 
                             "twice the bonds that the contact has had, one less while the last one lives; negative: broken by a strength"};
 const field field_scalar = {"scalar", PER_PARTICLE, FIELD_REAL, 1, FIELD_STATE, "", "a scalar of the grain, such as a concentration"};
 const field field_wall_area = {"wall_area", PER_SCENE, FIELD_INT, 1, FIELD_RESULT, "", "area that touches each wall"};
+const field field_beams = {"beams", PER_SCENE, FIELD_REAL, 1, FIELD_RESULT, "", "beams of the sources, a row a step where they vary"};
+const field field_beam_meets = {"beam_meets", PER_SCENE, FIELD_INT, 1, FIELD_RESULT, "", "1 for every beam that has met a grain"};
+#define DEPTH(sides) {"depth", PER_PARTICLE, FIELD_REAL, sides, FIELD_STATE, "m", "depth of the top below the bed's surface, by direction of beams"}
+const field field_depth[CLAST_BEAM_SIDES_MAX] = {DEPTH(1), DEPTH(2), DEPTH(3), DEPTH(4)};

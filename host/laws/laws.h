@@ -14,6 +14,13 @@ extern const law law_overlap_area, law_batchelor_obrien, law_pipe_network, law_w
 extern const law law_temperature_grains, law_temperature_pairs, law_substance_several, law_wall_temperature, law_environment_uniform,
     law_environment_profile, law_thermal_groups, law_heat_tally;
 
+/* Options of a source's law, in this order; reach: attenuation of a laser, largest depth of a burner. */
+enum { SOURCE_PROFILE, SOURCE_DIAMETER, SOURCE_REACH, SOURCE_INTERVAL };
+extern const law law_laser, law_burner;
+/* The law of a program that holds the scene's sources. */
+struct scene;
+const law *law_of_beams(const struct scene *scene);
+
 /* What pushes two bodies apart: coefficient r*^radius_power d^exponent, as the scene's normal law has it; exponent 0: nothing does. */
 typedef struct repulsion {
     double coefficient, radius_power, exponent;

@@ -133,12 +133,41 @@ typedef struct clast_group_heat {
     clast_i32 spare;
 } clast_group_heat;
 
+#define CLAST_BEAM_TOP_HAT 0
+#define CLAST_BEAM_GAUSSIAN 1
+
+/* A beam that heats, at one step. */
+typedef struct clast_beam {
+    clast_f64 position[3];  /* of a point of its axis */
+    clast_f64 direction[3]; /* unit vector */
+    clast_f64 intensity;    /* on the axis, W/m2 */
+    clast_f64 radius;       /* m; of a Gaussian beam where the intensity is 1/e2 of that on the axis */
+    clast_f64 reach;        /* 1/m: attenuation of a laser, inverse of the largest depth of a burner */
+    clast_i32 law;          /* index of its law: laser, burner */
+    clast_i32 profile;
+    clast_i32 side;         /* which of the directions that depths are kept for */
+    clast_i32 spare;
+} clast_beam;
+
+#define CLAST_BEAM_SIDES_MAX 4
+
+/* Columns along one direction of beams, in which the surface of the bed is looked for. */
+typedef struct clast_columns {
+    clast_f64 direction[3], across[3], beside[3]; /* an orthonormal set */
+    clast_f64 origin[3];
+    clast_f64 inverse_width, inverse_quantum; /* 1/m */
+    clast_i32 first_u, first_v, count_u, count_v;
+    clast_i32 first; /* of its columns among those of all directions */
+    clast_i32 spare;
+} clast_columns;
+
 /* What is added up for each grain, J. */
 #define CLAST_TALLY_SOURCES 0
 #define CLAST_TALLY_CONVECTION 1
 #define CLAST_TALLY_RADIATION 2
 #define CLAST_TALLY_WALLS 3
-#define CLAST_TALLIES 4
+#define CLAST_TALLY_ABSORBED 4 /* the part of the sources' that beams brought */
+#define CLAST_TALLIES 5
 
 #define CLAST_LEVELS_MAX 12
 

@@ -17,6 +17,7 @@ INLINE void heat_tally_add(__global exact *tally, const grain_heat *h)
     heat_tally_more(tally + CLAST_TALLY_CONVECTION, h->convection);
     heat_tally_more(tally + CLAST_TALLY_RADIATION, h->radiation);
     heat_tally_more(tally + CLAST_TALLY_WALLS, h->walls);
+    heat_tally_more(tally + CLAST_TALLY_ABSORBED, h->absorbed);
 }
 
 INLINE void heat_tally_keep(__global real *kept, const grain_heat *h, real weight, bool first)

@@ -51,10 +51,11 @@ INLINE void particle_grain(const clast_launch *launch, int i, grain *g PARTICLE_
 INLINE void particle_heat(const clast_launch *launch, int i, const grain *g, grain_heat *h PARTICLE_DECLARE)
 {
     real dt = number(launch->dt), apart = g->surroundings - g->temperature, capacity = temperature_capacity(g);
-    real given = SOURCE_HEAT(launch, i, g) + generation_heat(g) + THERMAL_GROUP_HEAT(launch, i);
+    real absorbed = SOURCE_HEAT(launch, i, g), given = absorbed + generation_heat(g) + THERMAL_GROUP_HEAT(launch, i);
     h->convection = dt * (convection_coefficient(g, g->temperature) * apart);
     h->radiation = dt * (radiation_coefficient(g, g->temperature) * apart);
     h->walls = dt * h->walls;
+    h->absorbed = dt * absorbed;
     real gain = dt * (h->contacts + given) + (h->convection + h->radiation);
     precise after = temperature_after(TEMPERATURE_PRECISE(i), gain / capacity);
     precise held = THERMAL_GROUP_TEMPERATURE(launch, i, after);
