@@ -145,6 +145,26 @@ static void summarise(run *r)
     output_text(r->output, "summary", text, &ignored);
 }
 
+/* What the beams of a scene delivered and what the grains took, and beams that met none. */
+static status report_sources(run *r, failure *why)
+{
+    heat_sums sums;
+    bool met[SOURCES_MAX] = {false};
+    if (!r->sim->live.law[SLOT_SOURCE])
+        return STATUS_OK;
+    TRY(heat_observe(r->sim, &sums, why));
+    TRY(beams_met(r->sim, met, why));
+    double absorbed = sums.tally[CLAST_TALLY_ABSORBED], delivered = r->sim->beams.delivered, share = delivered > 0.0 ? absorbed / delivered : 0.0;
+    tell(r, "sources: %.6g J delivered, %.6g J absorbed (%.1f %%)", delivered, absorbed, 100.0 * share);
+    if (share > 1.0)
+        tell(r, "warning: the grains absorb more than the beams carry: several layers together take more than falls on them; lower the absorptance or "
+                "raise the attenuation");
+    for (int b = 0; b < r->sim->beams.count; b++)
+        if (!met[b])
+            tell(r, "warning: the source `%s` has met no grain; look at the positions, direction and diameter of its beam", scene_beam(r->scene, b)->name);
+    return STATUS_OK;
+}
+
 /* ---- checkpoints ---- */
 
 static status save_state(run *r, bundle *out, failure *why)
@@ -428,6 +448,8 @@ static status open_output(run *r, bool continued, failure *why)
 
 static status finish(run *r, status result, failure *why)
 {
+    if (result == STATUS_OK)
+        result = report_sources(r, why);
     if (result == STATUS_OK)
         summarise(r);
     if (r->output) {

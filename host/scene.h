@@ -52,6 +52,7 @@ typedef struct quantity {
     double *value; /* [count][components] */
 } quantity;
 
+#define SOURCES_MAX 64
 /* Path of a source's beam: tables in time. */
 typedef struct beam {
     double direction[3]; /* unit vector */

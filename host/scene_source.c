@@ -96,6 +96,9 @@ status scene_check_sources(reader *r)
             if (s->effect[k].law->slot == SLOT_SOURCE && strcmp(s->effect[k].name, s->effect[e].name) == 0)
                 return document_fail(r->document, node, r->why, "two sources are called `%.60s`; give each a name of its own", s->effect[e].name);
     }
+    if (scene_beam_count(s) > SOURCES_MAX)
+        return document_fail(r->document, document_at(r->document, "effects"), r->why, "a scene has at most %d sources; this one has %d", SOURCES_MAX,
+                             scene_beam_count(s));
     if (scene_beam_sides(s) > CLAST_BEAM_SIDES_MAX)
         return document_fail(r->document, document_at(r->document, "effects"), r->why,
                              "the sources point in %d directions; depths are kept for at most %d", scene_beam_sides(s), CLAST_BEAM_SIDES_MAX);
