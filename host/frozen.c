@@ -50,7 +50,7 @@ static void release_arrays(simulation *sim)
     store_release(sim, &f->conductance, f->link_bytes);
     for (size_t k = 0; k < sizeof grains / sizeof *grains; k++)
         store_release(sim, grains[k], f->grain_bytes);
-    store_release(sim, &f->kept, 5 * f->grain_bytes);
+    store_release(sim, &f->kept, 6 * f->grain_bytes);
     f->link_bytes = f->grain_bytes = 0;
 }
 
@@ -74,7 +74,7 @@ static status fit_arrays(simulation *sim, failure *why)
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         TRY(store_buffer(sim, arrays[k], grains, "steps of heat", why));
     if (sim->all.law[SLOT_HEAT_TALLY])
-        TRY(store_buffer(sim, &f->kept, 5 * grains, "heat by path of a step", why));
+        TRY(store_buffer(sim, &f->kept, 6 * grains, "heat by path of a step", why));
     return store_fill(sim, f->zero, grains, why);
 }
 
@@ -365,6 +365,8 @@ static status accept(simulation *sim, const scheme *c, double step, double until
     launch.heat_row = sim->heat.vary ? c->stages : 0;
     TRY(launch_set(kernel, "heat_frozen_accept", why, "Lmm", &launch, f->rises[c->stages % 3], f->kept));
     TRY(run_grains(sim, "heat_frozen_accept", 3, why));
+    for (int k = 0; k < c->stages; k++)
+        beams_deliver(sim, sim->time + c->place[k] * step, c->weight[k] * step);
     sim->time = until;
     sim->step++;
     sim->stage_steps++;

@@ -2,9 +2,9 @@
 #define HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE) WRITE(exact, heat_tally)
 #define HEAT_TALLY_ADD(i, h) heat_tally_add(heat_tally + CLAST_TALLIES * (size_t)(i), h)
 #define HEAT_TALLY_OF(i, q) precise_load(heat_tally[CLAST_TALLIES * (size_t)(i) + (q)])
-/* A step of several stages adds up in `kept` until it is accepted: five numbers a grain. */
-#define HEAT_TALLY_KEEP(kept, i, h, weight, first) heat_tally_keep(kept + 5 * (size_t)(i), h, weight, first)
-#define HEAT_TALLY_KEPT(kept, i, h) heat_tally_kept(kept + 5 * (size_t)(i), h)
+/* A step of several stages adds up in `kept` until it is accepted: six numbers a grain. */
+#define HEAT_TALLY_KEEP(kept, i, h, weight, first) heat_tally_keep(kept + 6 * (size_t)(i), h, weight, first)
+#define HEAT_TALLY_KEPT(kept, i, h) heat_tally_kept(kept + 6 * (size_t)(i), h)
 
 INLINE void heat_tally_more(__global exact *tally, real heat)
 {
@@ -22,8 +22,8 @@ INLINE void heat_tally_add(__global exact *tally, const grain_heat *h)
 
 INLINE void heat_tally_keep(__global real *kept, const grain_heat *h, real weight, bool first)
 {
-    const real flow[5] = {h->contacts, h->walls, h->sources, h->convection, h->radiation};
-    for (int q = 0; q < 5; q++)
+    const real flow[6] = {h->contacts, h->walls, h->sources, h->convection, h->radiation, h->absorbed};
+    for (int q = 0; q < 6; q++)
         kept[q] = (first ? R(0.0) : kept[q]) + weight * flow[q];
 }
 
@@ -34,4 +34,5 @@ INLINE void heat_tally_kept(__global const real *kept, grain_heat *h)
     h->sources = kept[2];
     h->convection = kept[3];
     h->radiation = kept[4];
+    h->absorbed = kept[5];
 }

@@ -60,7 +60,8 @@ INLINE void frozen_flows(const clast_launch *launch, int i, grain *g, grain_heat
     real apart = g->surroundings - g->temperature;
     h->contacts = contacts + from_walls;
     h->walls = from_walls;
-    h->sources = SOURCE_HEAT(launch, i, g) + generation_heat(g) + THERMAL_GROUP_HEAT(launch, i);
+    h->absorbed = SOURCE_HEAT(launch, i, g);
+    h->sources = h->absorbed + generation_heat(g) + THERMAL_GROUP_HEAT(launch, i);
     h->convection = convection_coefficient(g, g->temperature) * apart;
     h->radiation = radiation_coefficient(g, g->temperature) * apart;
 }

@@ -1,6 +1,7 @@
 /* Beams that heat: TM Eq. 29 to 31, with depths counted from the top of the bed in the grain's own column. Grains are on a cubic lattice and
  * press on nothing, so that the heat of each is known. */
 #include "case.h"
+#include "frozen.h"
 
 #define RADIUS    5.0e-4
 #define SPACING   1.0e-3
@@ -55,12 +56,12 @@ static void test_laser(void **state)
     double *rise = rises(&c, 10, dt), gained = 0.0;
     for (int64_t i = 0; i < c.sim->id_count; i++) {
         double s = (double)(3 - i / 9) * SPACING; /* layers from the bottom up */
-        assert_float_equal(rise[i], ABSORBS * FRONT * INTENSITY * exp(-mu * s) * 10 * dt / CAPACITY, 1e-11 * 300.0);
+        NEAR(rise[i], ABSORBS * FRONT * INTENSITY * exp(-mu * s) * 10 * dt / CAPACITY, 1e-11 * 300.0);
         gained += rise[i] * CAPACITY;
     }
-    assert_float_equal(rise[35] * CAPACITY / (ABSORBS * 10 * dt), 10.0, 1e-8); /* TM 5.4: W on a grain of the surface */
-    assert_float_equal(sums_of(&c).tally[CLAST_TALLY_ABSORBED], gained, 1e-11 * 300.0 * 36 * CAPACITY);
-    assert_float_equal(c.sim->beams.delivered, POWER * 10 * dt, 1e-12 * POWER);
+    NEAR(rise[35] * CAPACITY / (ABSORBS * 10 * dt), 10.0, 1e-8); /* TM 5.4: W on a grain of the surface */
+    NEAR(sums_of(&c).tally[CLAST_TALLY_ABSORBED], gained, 1e-11 * 300.0 * 36 * CAPACITY);
+    NEAR(c.sim->beams.delivered, POWER * 10 * dt, 1e-12 * POWER);
     free(rise);
     case_close(&c);
 }
@@ -82,7 +83,7 @@ static void test_burner(void **state)
         double *rise = rises(&c, 1, dt);
         for (int64_t i = 0; i < c.sim->id_count; i++) {
             double s = (double)(3 - i / 9) * SPACING, share = fmax(1.0 - s / reach[n], 0.0);
-            assert_float_equal(rise[i], ABSORBS * FRONT * INTENSITY * share * dt / CAPACITY, 1e-11 * 300.0);
+            NEAR(rise[i], ABSORBS * FRONT * INTENSITY * share * dt / CAPACITY, 1e-11 * 300.0);
         }
         free(rise);
         case_close(&c);
@@ -107,7 +108,7 @@ static void test_gaussian_from_the_side(void **state)
         double x = (double)(i % 3) * SPACING, y = (double)(i / 3 % 3) * SPACING, z = (double)(i / 9) * SPACING;
         double rho2 = pow(y - 1e-3, 2) + pow(z - 2e-3, 2);
         double power = ABSORBS * FRONT * 2.0 * POWER / (PI * w * w) * exp(-2.0 * rho2 / (w * w)) * exp(-mu * x);
-        assert_float_equal(rise[i], power * dt / CAPACITY, 1e-11 * 300.0);
+        NEAR(rise[i], power * dt / CAPACITY, 1e-11 * 300.0);
     }
     free(rise);
     case_close(&c);
@@ -127,9 +128,9 @@ static void test_oblique_beam_meets_the_first_grain(void **state)
             "{position_m: [3e-3, 0, -3e-3], radius_m: 5e-4}, {position_m: [3e-3, 0, 3e-3], radius_m: 5e-4}]}]\n");
     physics_case c = case_open(&t);
     double *rise = rises(&c, 1, 1.0), expected = FRONT * 1000.0 / (PI * 0.25) / CAPACITY;
-    assert_float_equal(rise[0], expected, 1e-9);
-    assert_float_equal(rise[1], 0.0, 1e-12); /* behind the first by 3 sqrt(2) mm */
-    assert_float_equal(rise[2], expected, 1e-9);
+    NEAR(rise[0], expected, 1e-9);
+    NEAR(rise[1], 0.0, 1e-12); /* behind the first by 3 sqrt(2) mm */
+    NEAR(rise[2], expected, 1e-9);
     free(rise);
     case_close(&c);
 }
@@ -155,9 +156,9 @@ static void test_moving_beam(void **state)
             if (pow(x - centre, 2) + y * y <= radius * radius)
                 energy += ABSORBS * FRONT * power / (PI * radius * radius) * dt;
         }
-        assert_float_equal(rise[i], energy / CAPACITY, 1e-10 * 300.0);
+        NEAR(rise[i], energy / CAPACITY, 1e-10 * 300.0);
     }
-    assert_float_equal(c.sim->beams.delivered, delivered, 1e-12 * delivered);
+    NEAR(c.sim->beams.delivered, delivered, 1e-12 * delivered);
     free(rise);
     case_close(&c);
 }
@@ -178,7 +179,7 @@ static void test_two_sources(void **state)
     for (int64_t i = 0; i < c.sim->id_count; i++) {
         double below = (double)(2 - i / 9) * SPACING, behind = (double)(2 - i % 3) * SPACING;
         double power = ABSORBS * FRONT / area * (100.0 * exp(-2000.0 * below) + 300.0 * fmax(1.0 - behind / 2e-3, 0.0));
-        assert_float_equal(rise[i], power * 1e-3 / CAPACITY, 1e-11 * 300.0);
+        NEAR(rise[i], power * 1e-3 / CAPACITY, 1e-11 * 300.0);
     }
     bool met[2];
     MUST(beams_met(c.sim, met, why));
@@ -219,6 +220,30 @@ static void test_batches(void **state)
     free(first);
 }
 
+/* In a stage without motion: a laser whose power rises linearly, P t/T over T, gives P T/2. */
+static void test_frozen(void **state)
+{
+    (void)state;
+    const double mu = 2000.0, time = 0.5;
+    text t = {0};
+    put_bed(&t,
+            "  - {slot: source, law: laser, name: spot, diameter_m: 0.01, direction: [0, 0, -1], attenuation_1_m: 2000, "
+            "path: {time_s: [0, 0.5], position_m: [[1e-3, 1e-3, 5], [1e-3, 1e-3, 5]], power_w: [0, 10]}}\n",
+            "stages: [{motion: frozen, until: {time_s: 0.5}, heat: {tolerance: 1e-8}}]\n", 3, 3);
+    physics_case c = case_open(&t);
+    MUST(frozen_advance(c.sim, time, INT64_MAX, why));
+    double *now = case_field(&c, "temperature"), delivered = 0.5 * 10.0 * time, gained = 0.0;
+    for (int64_t i = 0; i < c.sim->id_count; i++) {
+        double s = (double)(2 - i / 9) * SPACING;
+        NEAR(now[i] - 300.0, ABSORBS * FRONT / (PI * 0.25e-4) * delivered * exp(-mu * s) / CAPACITY, 1e-9 * 300.0);
+        gained += (now[i] - 300.0) * CAPACITY;
+    }
+    NEAR(c.sim->beams.delivered, delivered, 1e-9 * delivered);
+    NEAR(sums_of(&c).tally[CLAST_TALLY_ABSORBED], gained, 1e-9 * gained);
+    free(now);
+    case_close(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_laser),
@@ -227,6 +252,7 @@ int main(void)
                                        cmocka_unit_test(test_oblique_beam_meets_the_first_grain),
                                        cmocka_unit_test(test_moving_beam),
                                        cmocka_unit_test(test_two_sources),
-                                       cmocka_unit_test(test_batches)};
+                                       cmocka_unit_test(test_batches),
+                                       cmocka_unit_test(test_frozen)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
