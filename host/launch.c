@@ -6,6 +6,7 @@
 #include "simulation.h"
 
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,6 +52,10 @@ static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENT
 int launch_argument_names(const live_laws *live, const char *kernel, const char **names, int max)
 {
     int count = 0;
+    if (strcmp(kernel, "step_loop") == 0) {
+        count = launch_argument_names(live, "pair_stage", names, max);
+        return count + launch_argument_names(live, "particle_stage", names + count, max - count);
+    }
     for (size_t l = 0; l < sizeof stage_lists / sizeof *stage_lists; l++) {
         const stage_list *list = &stage_lists[l];
         if (strcmp(list->kernel, kernel) != 0)
@@ -100,8 +105,8 @@ static cl_mem named_buffer(simulation *sim, const char *name)
 
 status launch_bind(simulation *sim, const char *kernel, int first, failure *why)
 {
-    const char *names[64];
-    int count = launch_argument_names(&sim->live, kernel, names, 64);
+    const char *names[LAUNCH_NAMES_MAX];
+    int count = launch_argument_names(&sim->live, kernel, names, LAUNCH_NAMES_MAX);
     cl_kernel k = launch_kernel(sim, kernel);
     for (int a = 0; a < count; a++) {
         cl_mem mem = named_buffer(sim, names[a]);
@@ -123,6 +128,7 @@ status launch_bind_stages(simulation *sim, failure *why)
     const char *const others[] = {"pair_probe", "observe_records", "limit_records"};
     for (size_t k = 0; k < sizeof others / sizeof *others; k++)
         TRY(launch_bind(sim, others[k], 1, why));
+    TRY(step_loop_bind(sim, why));
     return live_keeps_half_steps(&sim->live) ? launch_bind(sim, "particle_synchronise", 3, why) : STATUS_OK;
 }
 
@@ -143,6 +149,8 @@ static bool is_of_table(const char *name)
 
 static bool has_kernel(const simulation *sim, const char *name)
 {
+    if (strcmp(name, "step_loop") == 0)
+        return step_loop_wanted(sim);
     if (strcmp(name, "particle_synchronise") == 0)
         return live_keeps_half_steps(&sim->live);
     if (strcmp(name, "heat_areas") == 0)
@@ -164,7 +172,13 @@ status launch_open(simulation *sim, failure *why)
     char constants[8192], table_constants[256];
     live_table_constants(&sim->live, table_constants, sizeof table_constants);
     live_constants(&sim->live, sim->scene, constants, sizeof constants);
-    TRY(open_program(sim, constants, files, live_files(&sim->live, files, 64), &sim->program, why));
+    int count = live_files(&sim->live, files, 63);
+    size_t used = strlen(constants);
+    if (step_loop_wanted(sim)) {
+        files[count++] = "stage/step_loop.cl";
+        snprintf(constants + used, sizeof constants - used, "#define LOOP_ITEMS %d\n", step_loop_items(sim));
+    }
+    TRY(open_program(sim, constants, files, count, &sim->program, why));
     TRY(open_program(sim, table_constants, table_files, live_table_files(&sim->live, table_files), &sim->table_program, why));
     static const char *const names[] = {"pair_stage",       "pair_probe",      "particle_stage",    "scan_chunks",       "scan_sums",
                                         "scan_write",       "table_bin",       "table_order",       "table_order_cells", "table_permute_real", "table_permute_exact",
@@ -172,7 +186,7 @@ status launch_open(simulation *sim, failure *why)
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
-                                        "particle_synchronise", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
+                                        "particle_synchronise", "step_loop", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
                                         "heat_conductances", "heat_limit", "heat_sums", "heat_areas",
                                         "heat_frozen_given", "heat_frozen_links", "heat_frozen_stage", "heat_frozen_error",
                                         "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_spectrum",
@@ -202,7 +216,7 @@ void launch_close(simulation *sim)
     sim->program = sim->table_program = NULL;
 }
 
-cl_kernel launch_kernel(simulation *sim, const char *name)
+cl_kernel launch_kernel(const simulation *sim, const char *name)
 {
     for (int k = 0; k < sim->kernel_count; k++)
         if (strcmp(sim->kernel[k].name, name) == 0)
@@ -237,11 +251,16 @@ clast_launch launch_values(const simulation *sim)
     return v;
 }
 
+clast_launch launch_as_passed(clast_launch launch)
+{
+    if (launch.mixed)
+        precision_split_launch(&launch);
+    return launch;
+}
+
 status launch_pass(cl_kernel kernel, const char *name, const clast_launch *launch, failure *why)
 {
-    clast_launch passed = *launch;
-    if (passed.mixed)
-        precision_split_launch(&passed);
+    const clast_launch passed = launch_as_passed(*launch);
     TRY_CL(clSetKernelArg(kernel, 0, sizeof passed, &passed), name);
     return STATUS_OK;
 }

@@ -224,9 +224,13 @@ typedef struct output_spec {
     double checkpoint_every_s;   /* NAN: none but at an interrupt or a guard */
 } output_spec;
 
+/* Two launches a step, or a loop over steps in one work-group. */
+typedef enum step_form { STEP_AUTO, STEP_TWO_KERNELS, STEP_ONE_GROUP } step_form;
+
 typedef struct table_spec {
     double skin_m;         /* NAN: auto */
     int64_t batch_steps;   /* 0: auto */
+    step_form step_form;
 } table_spec;
 
 typedef struct guard_spec {

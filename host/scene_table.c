@@ -369,6 +369,8 @@ static const parameter table_rows[] = {
     {.key = "batch_steps", .type = PARAMETER_INTEGER, .low = 1, .high = 1e9, .word = "auto",
      .fallback = "auto", AT(table_spec, batch_steps),
      .doc = "steps enqueued before the host looks"},
+    {.key = "step_form", .type = PARAMETER_CHOICE, .choices = "auto|two_kernels|one_group", .fallback = "auto", AT(table_spec, step_form),
+     .doc = "two kernels a step, or one work-group that loops over steps, for small beds; `auto` goes by size"},
     {0},
 };
 const section table_section = {.name = "contact table", .doc = "How contacts are searched. Changes speed, not results.", .row = table_rows};

@@ -235,7 +235,7 @@ void simulation_free(simulation *sim)
     for (int f = 0; f < sim->field_count; f++)
         store_release(sim, &sim->field[f].mem, 0);
     cl_mem *const rest[] = {&sim->where, &sim->partial, &sim->control, &sim->faces, &sim->movers, &sim->constants, &sim->built_position, &sim->scratch4,
-                            &sim->velocity_now, &sim->spin_now};
+                            &sim->velocity_now, &sim->spin_now, &sim->launches};
     for (size_t m = 0; m < sizeof rest / sizeof *rest; m++)
         store_release(sim, rest[m], 0);
     free(sim->wall_body);
@@ -244,6 +244,7 @@ void simulation_free(simulation *sim)
     free(sim->group_of_id);
     free(sim->face_rows);
     free(sim->mover_rows);
+    free(sim->launch_rows);
     free(sim->kernels_directory);
     free(sim);
 }
@@ -613,23 +614,30 @@ static status look_at_skin(simulation *sim, bool *rebuild, failure *why)
     return STATUS_OK;
 }
 
+clast_launch launch_of_step(const simulation *sim, int s, int bond_step)
+{
+    clast_launch launch = launch_values(sim);
+    launch.bonding = s == bond_step;
+    double since = sim->time + (double)(s + 1) * sim->dt - sim->built_time;
+    launch.step = s;
+    launch.lag = s == 0 ? sim->lag : sim->dt;
+    launch.kick = live_keeps_half_steps(&sim->live) ? 0.5 * (launch.lag + sim->dt) : sim->dt;
+    launch.face_row = sim->walls_move ? s : 0;
+    launch.mover_row = sim->groups_move ? s : 0;
+    launch.heat_row = sim->heat.vary ? s : 0;
+    for (int c = 0; c < 3; c++)
+        launch.drift[c] = sim->drift_velocity[c] * since;
+    return launch;
+}
+
 static status enqueue_batch(simulation *sim, int steps, failure *why)
 {
     cl_kernel pair = launch_kernel(sim, "pair_stage"), particle = launch_kernel(sim, "particle_stage");
-    clast_launch launch = launch_values(sim);
-    bool halves = live_keeps_half_steps(&sim->live);
     int bond_step = bonds_step(sim, steps);
+    if (step_loop_now(sim))
+        return step_loop_enqueue(sim, steps, why);
     for (int s = 0; s < steps; s++) {
-        launch.bonding = s == bond_step;
-        double since = sim->time + (double)(s + 1) * sim->dt - sim->built_time;
-        launch.step = s;
-        launch.lag = s == 0 ? sim->lag : sim->dt;
-        launch.kick = halves ? 0.5 * (launch.lag + sim->dt) : sim->dt;
-        launch.face_row = sim->walls_move ? s : 0;
-        launch.mover_row = sim->groups_move ? s : 0;
-        launch.heat_row = sim->heat.vary ? s : 0;
-        for (int c = 0; c < 3; c++)
-            launch.drift[c] = sim->drift_velocity[c] * since;
+        clast_launch launch = launch_of_step(sim, s, bond_step);
         TRY(heat_sum_areas(sim, &launch, why));
         TRY(launch_pass(pair, "pair_stage", &launch, why));
         TRY(launch_pass(particle, "particle_stage", &launch, why));

@@ -14,6 +14,8 @@
 #define SIMULATION_FIELDS_MAX 32
 #define SIMULATION_KERNELS_MAX 64
 #define BATCH_STEPS_MAX 1024
+/* Arguments of a kernel that the descriptors name, at most. */
+#define LAUNCH_NAMES_MAX 96
 
 /* One array on the device. */
 typedef struct stored_field {
@@ -113,6 +115,9 @@ typedef struct simulation {
     int64_t stride;         /* grains that fields have room for: `id_count` up to a whole block; components of a grain stand together */
     bool particles_stale;   /* `where` lags behind */
     cl_mem where, partial, control, faces, movers, constants, built_position, scratch4;
+    cl_mem launches;         /* of the steps of a batch, for the one-group form; NULL while it is not used */
+    clast_launch *launch_rows;
+    int loop_capacity;
     cl_mem velocity_now, spin_now; /* synchronised, where velocities stand half a step behind */
     int64_t partial_capacity;
     contact_table table;
@@ -200,8 +205,10 @@ int launch_argument_names(const live_laws *live, const char *kernel, const char 
 /* Sets the fields of one of the stages that read records or grains, from argument `first` on. */
 status launch_bind(simulation *sim, const char *kernel, int first, failure *why);
 status launch_bind_stages(simulation *sim, failure *why);
-cl_kernel launch_kernel(simulation *sim, const char *name);
+cl_kernel launch_kernel(const simulation *sim, const char *name);
 clast_launch launch_values(const simulation *sim);
+/* The values as a kernel reads them: in pairs of floats where precision is mixed. */
+clast_launch launch_as_passed(clast_launch launch);
 /* Sets argument 0, in the precision that the values name. */
 status launch_pass(cl_kernel kernel, const char *name, const clast_launch *launch, failure *why);
 status launch_run(simulation *sim, cl_kernel kernel, const char *name, int64_t items, int64_t group, failure *why);
@@ -210,6 +217,19 @@ status launch_run(simulation *sim, cl_kernel kernel, const char *name, int64_t i
 status launch_set(cl_kernel kernel, const char *name, failure *why, const char *types, ...);
 /* The same from argument `first` on. */
 status launch_set_from(cl_kernel kernel, const char *name, cl_uint first, failure *why, const char *types, ...);
+
+/* What the stages are told in step `s` of the batch to come; bonds are made in `bond_step` of it (-1: in none). */
+clast_launch launch_of_step(const simulation *sim, int s, int bond_step);
+
+/* step_loop.c: many steps in one work-group */
+/* True where the scene's programs are to have the kernel. */
+bool step_loop_wanted(const simulation *sim);
+/* True where the batch to come takes that form. */
+bool step_loop_now(const simulation *sim);
+/* Work-items of the group. */
+int step_loop_items(const simulation *sim);
+status step_loop_bind(simulation *sim, failure *why);
+status step_loop_enqueue(simulation *sim, int steps, failure *why);
 
 /* table.c */
 status table_create(simulation *sim, failure *why);

@@ -97,22 +97,27 @@ INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t P
     return dot3(moved, moved);
 }
 
-/* A grain that has used up half the skin, or has left the domain, stops the batch after this step. */
+/* The grain at a place in a block. One that has used up half the skin, or has left the domain, stops the batch after this step. */
+INLINE void particle_step(const clast_launch *launch, __global clast_control *control, int block, int lane PARTICLE_DECLARE)
+{
+    int i = CLAST_BLOCK * block + lane;
+    vec3 f, t;
+    grain g;
+    grain_heat h;
+    particle_gather(launch, block, lane, &f, &t, &h PARTICLE_PASS);
+    particle_grain(launch, i, &g PARTICLE_PASS);
+    particle_heat(launch, i, &g, &h PARTICLE_PASS);
+    real travel2 = particle_advance(launch, i, f, t PARTICLE_PASS);
+    if (i < launch->particle_count && !(travel2 <= number(launch->travel2))) {
+        /* whoever writes, writes the same */
+        control->reason = CLAST_HALT_TRAVEL;
+        control->halt_step = launch->step + 1;
+    }
+}
+
 __kernel void particle_stage(const clast_launch launch, __global clast_control *restrict control PARTICLE_DECLARE)
 {
     if (control->halt_step <= launch.step)
         return;
-    int i = get_global_id(0);
-    vec3 f, t;
-    grain g;
-    grain_heat h;
-    particle_gather(&launch, get_group_id(0), get_local_id(0), &f, &t, &h PARTICLE_PASS);
-    particle_grain(&launch, i, &g PARTICLE_PASS);
-    particle_heat(&launch, i, &g, &h PARTICLE_PASS);
-    real travel2 = particle_advance(&launch, i, f, t PARTICLE_PASS);
-    if (i < launch.particle_count && !(travel2 <= number(launch.travel2))) {
-        /* whoever writes, writes the same */
-        control->reason = CLAST_HALT_TRAVEL;
-        control->halt_step = launch.step + 1;
-    }
+    particle_step(&launch, control, get_group_id(0), get_local_id(0) PARTICLE_PASS);
 }
