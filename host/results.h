@@ -67,4 +67,15 @@ typedef struct results_particles {
 status results_read_particles(const char *path, int64_t frame, results_particles *out, failure *why);
 void results_particles_free(results_particles *p);
 
+/* The last sample of every observable in a results file, one entry a component ("momentum.x", "walls/floor/force.z"). */
+typedef struct results_ends {
+    int count;
+    char **name;
+    double *value;
+} results_ends;
+status results_read_ends(const char *path, results_ends *out, failure *why);
+/* Index of an entry, or -1. */
+int results_find_end(const results_ends *ends, const char *name);
+void results_free_ends(results_ends *ends);
+
 #endif

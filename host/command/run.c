@@ -1,14 +1,19 @@
 /* clast run, clast resume */
 #include "../run.h"
 #include "../scene.h"
+#include "../sweep.h"
 #include "command.h"
 
+#include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { KEY_SWEEP = 256, KEY_PRECISION };
+enum { KEY_SWEEP = 256, KEY_PRECISION, KEY_JOBS };
 
 typedef struct run_input {
     run_options options;
+    set_options sweep;
+    int jobs;
     device_options device;
     set_options set;
 } run_input;
@@ -18,6 +23,18 @@ static void check_precision(const struct argp_state *state, const char *precisio
     enum precision found;
     if (!precision_find(precision, &found))
         option_refuse(state, "--precision: `%s` is none of auto, double, mixed", precision);
+}
+
+static error_t add_sweep(const struct argp_state *state, set_options *sweep, char *argument)
+{
+    if (!strchr(argument, '='))
+        option_refuse(state, "--sweep %s: write PATH=A,B,C", argument);
+    char **value = realloc(sweep->value, ((size_t)sweep->count + 1) * sizeof *value);
+    if (!value)
+        return ENOMEM;
+    sweep->value = value;
+    sweep->value[sweep->count++] = argument;
+    return 0;
 }
 
 static error_t parse_run(int key, char *argument, struct argp_state *state)
@@ -39,7 +56,10 @@ static error_t parse_run(int key, char *argument, struct argp_state *state)
         input->options.precision = argument;
         return 0;
     case KEY_SWEEP:
-        option_refuse(state, "--sweep is not in this version; run the scene once for each value, with --set");
+        return add_sweep(state, &input->sweep, argument);
+    case KEY_JOBS:
+        input->jobs = (int)option_count(state, "--jobs", argument, 1, 10000);
+        return 0;
     case ARGP_KEY_ARG:
         option_only(state, &input->options.scene_path, argument);
         return 0;
@@ -47,7 +67,9 @@ static error_t parse_run(int key, char *argument, struct argp_state *state)
         if (!input->options.scene_path)
             option_refuse(state, "which scene? Name a SCENE.yaml");
         if (!input->options.out)
-            option_refuse(state, "where to? Name the results file: --out RESULT.h5");
+            option_refuse(state, "where to? Name the results file: --out RESULT.h5 (with --sweep a folder)");
+        if (input->jobs > 0 && input->sweep.count == 0)
+            option_refuse(state, "--jobs: there is no --sweep to spread over them");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -82,7 +104,8 @@ static error_t parse_resume(int key, char *argument, struct argp_state *state)
 static const struct argp_option run_option[] = {
     {"out", 'o', "RESULT.h5", 0, "Results file; an XDMF file and the checkpoint get the same stem", 0},
     {"precision", KEY_PRECISION, "P", 0, "auto, double or mixed, instead of the scene's", 0},
-    {"sweep", KEY_SWEEP, "PATH=A,B,C", 0, "Run once for each value (not in this version)", 0},
+    {"sweep", KEY_SWEEP, "PATH=A,B,C", 0, "Run once for each value, into the folder --out, with one table (sweep.csv); repeated: every combination", 0},
+    {"jobs", KEY_JOBS, "N", 0, "Runs of a sweep at a time (default: one a core where beds are small)", 0},
     {"quiet", 'q', NULL, 0, "Show no progress", 0},
     {0},
 };
@@ -119,8 +142,15 @@ static status start(run_input *input, status (*run)(const run_options *options, 
     input->options.kernels = input->device.kernels;
     input->options.set_count = input->set.count;
     input->options.sets = input->set.value;
-    run_catch_signals();
-    status result = run(&input->options, why);
+    status result;
+    if (input->sweep.count > 0) {
+        const sweep_options sweep = {input->options, input->sweep.count, input->sweep.value, input->jobs};
+        result = sweep_run(&sweep, why);
+    } else {
+        run_catch_signals();
+        result = run(&input->options, why);
+    }
+    set_options_free(&input->sweep);
     set_options_free(&input->set);
     return result;
 }

@@ -1,5 +1,7 @@
 """The command line: help, messages and exit codes."""
+import csv
 import json
+import math
 import os
 import re
 import subprocess
@@ -59,13 +61,49 @@ class Command(unittest.TestCase):
         self.refused(["xyzzy"], "`xyzzy`", "clast --help")
         self.refused(["--xyzzy"], "--xyzzy")
 
+    def test_sweep(self):
+        """Every combination is run, the last key changing fastest; each has its result, and the table what it ends with: a grain falls free
+        for t from rest, E = m (g t)^2/2 whatever else it is made of. A run that fails leaves the others alone."""
+        with tempfile.TemporaryDirectory() as folder:
+            scene, out = os.path.join(folder, "scene.yaml"), os.path.join(folder, "runs")
+            with open(scene, "w") as file:
+                file.write(SCENE + "output: {observables: [kinetic_energy, momentum]}\nguards: {every_steps: 1}\n")
+            done = clast("run", scene, "--out", out, "--sweep", "gravity_m_s2=[0, 0, -9.81],[0, 0, -5]", "--sweep",
+                         "materials[glass].density_kg_m3=2500,5000")
+            self.assertEqual(done.returncode, OK, done.stderr)
+            self.assertEqual(len(re.findall(r"\[\d/4\]", done.stderr)), 4)
+            with open(os.path.join(out, "sweep.csv"), newline="") as file:
+                rows = list(csv.DictReader(file))
+            self.assertEqual([row["gravity_m_s2"] for row in rows], ["[0, 0, -9.81]"] * 2 + ["[0, 0, -5]"] * 2)
+            self.assertEqual([row["materials[glass].density_kg_m3"] for row in rows], ["2500", "5000"] * 2)
+            for row in rows:
+                mass = 4 / 3 * math.pi * 1e-9 * float(row["materials[glass].density_kg_m3"])
+                speed = (9.81 if "9.81" in row["gravity_m_s2"] else 5) * 1e-3
+                self.assertAlmostEqual(float(row["kinetic_energy"]) / (mass * speed**2 / 2), 1, 9)
+                self.assertAlmostEqual(float(row["momentum.z"]) / (-mass * speed), 1, 9)
+                self.assertEqual(row["exit_code"], "0")
+                self.assertTrue(os.path.exists(os.path.join(out, row["result"])))
+            # a grain that leaves the domain: a guard ends that run, and the sweep has its exit code
+            done = clast("run", scene, "--out", out, "--set", "domain={low_m: [-1, -1, -1], high_m: [1, 1, 0.0101]}", "--sweep",
+                         "particles[one].items[0].velocity_m_s=[0, 0, 0],[0, 0, 1]", "--quiet")
+            self.assertEqual(done.returncode, 4, done.stderr)
+            self.assertIn("[0, 0, 1]: failed", done.stderr)
+            with open(os.path.join(out, "sweep.csv"), newline="") as file:
+                self.assertEqual([row["exit_code"] for row in csv.DictReader(file)], ["0", "4"])
+            # nothing is run where a scene is wrong, or the folder is none
+            self.refused(["run", scene, "--out", os.path.join(folder, "other"), "--sweep", "dimensions=3,4"], "`dimensions`")
+            self.assertFalse(os.path.exists(os.path.join(folder, "other")))
+            self.refused(["run", scene, "--out", scene, "--sweep", "seed=1,2"], scene, "folder")
+            self.refused(["run", scene, "--out", out, "--sweep", "seed=1,,2"], "value 2 is empty")
+
     def test_bad_options(self):
         one_line = [
             (["run"], "SCENE.yaml"),
             (["run", "a.yaml"], "--out"),
             (["run", "a.yaml", "b.yaml", "--out", "c.h5"], "`b.yaml`"),
             (["run", "a.yaml", "--out", "c.h5", "--precision", "half"], "`half`"),
-            (["run", "a.yaml", "--out", "c", "--sweep", "seed=1,2"], "not in this version"),
+            (["run", "a.yaml", "--out", "c", "--sweep", "seed"], "PATH=A,B,C"),
+            (["run", "a.yaml", "--out", "c", "--jobs", "2"], "--sweep"),
             (["run", "a.yaml", "--out", "c.h5", "--set", "seed"], "PATH=VALUE"),
             (["resume"], "CHECKPOINT.h5"),
             (["check"], "SCENE.yaml"),
