@@ -44,10 +44,10 @@ static const stage_list stage_lists[] = {
 
 /* The order in which PAIR_FIELDS and PARTICLE_FIELDS name the slots. */
 static const slot_id pair_slots[] = {SLOT_COMPOSITION, SLOT_MOTION, SLOT_ROTATION, SLOT_BONDING, SLOT_BOND, SLOT_COHESION,
-                                     SLOT_SLIP,        SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_DISSIPATION, SLOT_LEDGER, SLOT_WALLS, SLOT_TEMPERATURE, SLOT_CONDUCTION, SLOT_WALL_HEAT,
+                                     SLOT_SLIP,        SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_DISSIPATION, SLOT_LEDGER, SLOT_WALLS, SLOT_TEMPERATURE, SLOT_MODULUS, SLOT_SOFTENING, SLOT_CONDUCTION, SLOT_WALL_HEAT,
                                      SLOT_INTEGRATOR};
 static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENTATION, SLOT_TEMPERATURE, SLOT_SUBSTANCE, SLOT_ENVIRONMENT,
-                                         SLOT_CONDUCTION, SLOT_SOURCE, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY, SLOT_LEDGER, SLOT_INTEGRATOR};
+                                         SLOT_CONDUCTION, SLOT_SOURCE, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY, SLOT_MODULUS, SLOT_DISSIPATION, SLOT_LEDGER, SLOT_INTEGRATOR};
 
 int launch_argument_names(const live_laws *live, const char *kernel, const char **names, int max)
 {

@@ -8,7 +8,7 @@
 const law *const laws[] = {&law_hertz,        &law_linear,        &law_mindlin, &law_coulomb_linear, &law_elastic_plastic,
                            &law_constant_torque, &law_power, &law_adhesion, &law_parallel, &law_local_damping, &law_viscous_damping, &law_overlap_area,
                            &law_batchelor_obrien, &law_pipe_network, &law_newton,
-                           &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, &law_laser, &law_burner, NULL};
+                           &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, &law_laser, &law_burner, &law_exponential_softening, NULL};
 
 static const struct {
     const char *name;
@@ -18,7 +18,8 @@ static const struct {
     [SLOT_ROTATION] = {"rotation", false},       [SLOT_NORMAL] = {"normal", true},
     [SLOT_BONDING] = {"bonding", false},         [SLOT_BOND] = {"bond", true},              [SLOT_COHESION] = {"cohesion", false},
     [SLOT_SLIP] = {"slip", false},
-    [SLOT_TANGENTIAL] = {"tangential", true},    [SLOT_ROLLING] = {"rolling", true},        [SLOT_DISSIPATION] = {"dissipation", false},
+    [SLOT_TANGENTIAL] = {"tangential", true},    [SLOT_ROLLING] = {"rolling", true},        [SLOT_MODULUS] = {"modulus", true},          [SLOT_SOFTENING] = {"softening", false},
+    [SLOT_DISSIPATION] = {"dissipation", false},
     [SLOT_LEDGER] = {"ledger", false},           [SLOT_WALLS] = {"walls", false},
     [SLOT_TEMPERATURE] = {"temperature", false}, [SLOT_SUBSTANCE] = {"substance", false},   [SLOT_CONDUCTION] = {"conduction", true},
     [SLOT_WALL_HEAT] = {"wall_heat", false},     [SLOT_ENVIRONMENT] = {"environment", false}, [SLOT_CONVECTION] = {"convection", true},
@@ -58,7 +59,8 @@ const property *const *material_properties(void)
     static const property *const all[] = {&property_density, &property_youngs_modulus, &property_poissons_ratio,
                                           &property_conductivity, &property_specific_heat,
                                           &property_film_thickness, &property_film_conductivity, &property_real_modulus,
-                                          &property_emissivity, &property_absorptance, &property_heat_generation, NULL};
+                                          &property_emissivity, &property_absorptance, &property_heat_generation, 
+                                          &property_softening_temperature, &property_softening_rate, &property_modulus_floor, NULL};
     return all;
 }
 

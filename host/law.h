@@ -13,6 +13,7 @@ typedef enum slot_id {
     SLOT_ROTATION,    /* derived: spin, where a law or an output asks for it */
     SLOT_TEMPERATURE, /* derived: temperature and its step, where a thermal law or an output asks for them */
     SLOT_SUBSTANCE,   /* derived: constants of the grains' materials, where several have a temperature */
+    SLOT_MODULUS, /* moduli that depend on temperature */
     SLOT_NORMAL,
     SLOT_BONDING, /* derived: what lets a contact bond */
     SLOT_BOND,
@@ -20,6 +21,7 @@ typedef enum slot_id {
     SLOT_SLIP, /* derived: one friction coefficient, or static and dynamic with the sliding flag */
     SLOT_TANGENTIAL,
     SLOT_ROLLING,
+    SLOT_SOFTENING,   /* derived: work of changing moduli, where the ledger is live */
     SLOT_DISSIPATION, /* derived: what contacts dissipate, where the ledger or heat asks */
     SLOT_LEDGER, /* derived: energies, where an observable asks for them */
     SLOT_CONDUCTION,

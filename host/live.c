@@ -149,7 +149,9 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
     if (wants_ledger(scene))
         out->law[SLOT_LEDGER] = &law_ledger_energies;
     if (out->law[SLOT_LEDGER])
-        out->law[SLOT_DISSIPATION] = &law_dissipation_tracked;
+        out->law[SLOT_DISSIPATION] = scene->integrator == INTEGRATOR_VELOCITY_VERLET ? &law_dissipation_synchronous : &law_dissipation_tracked;
+    if (out->law[SLOT_LEDGER] && out->law[SLOT_MODULUS])
+        out->law[SLOT_SOFTENING] = &law_softening_tracked;
     if (scene_outputs(scene, "orientation"))
         out->law[SLOT_ORIENTATION] = &law_orientation_quaternion;
     const law *verlet = turning ? &law_velocity_verlet_spin : &law_velocity_verlet;
@@ -171,6 +173,8 @@ void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, liv
         out->law[SLOT_SLIP] = NULL;
     if (!out->law[SLOT_BOND])
         out->law[SLOT_BONDING] = NULL;
+    if (!out->law[SLOT_MODULUS])
+        out->law[SLOT_SOFTENING] = NULL;
     if (out->law[SLOT_TEMPERATURE])
         out->law[SLOT_TEMPERATURE] = temperature_law(out);
     if (!out->law[SLOT_CONDUCTION])
@@ -191,6 +195,7 @@ static const char *none_file(slot_id slot)
         [SLOT_WALL_HEAT] = "none/wall_heat.cl",     [SLOT_ENVIRONMENT] = "none/environment.cl", [SLOT_CONVECTION] = "none/convection.cl",
         [SLOT_RADIATION] = "none/radiation.cl",     [SLOT_SOURCE] = "none/source.cl",           [SLOT_HEAT_GENERATION] = "none/heat_generation.cl",
         [SLOT_THERMAL_GROUPS] = "none/thermal_groups.cl", [SLOT_HEAT_TALLY] = "none/heat_tally.cl",
+        [SLOT_MODULUS] = "none/modulus.cl",         [SLOT_SOFTENING] = "none/softening.cl",
         [SLOT_DISSIPATION] = "none/dissipation.cl", [SLOT_LEDGER] = "none/ledger.cl",
         [SLOT_BODY] = "none/body.cl",               [SLOT_ORIENTATION] = "none/orientation.cl", [SLOT_INTEGRATOR] = NULL,
     };

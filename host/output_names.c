@@ -9,6 +9,7 @@ const output_name output_fields[] = {
     {"force", "N", 3, NULL, "total force"},
     {"torque", "N m", 3, NULL, "total torque about the centre"},
     {"scalar", "1", 1, NULL, "the scalar of the grain that a bond criterion looks at"},
+    {"modulus_factor", "1", 1, NULL, "Young's modulus at the temperature of the grain over the one given"},
     {"temperature", "K", 1, NULL, "temperature"},
     {0},
 };

@@ -14,6 +14,8 @@ extern const property property_bond_stiffness, property_bond_equilibrium_overlap
     property_bond_equilibrium_strain, property_bond_exponent, property_bond_damping, property_bond_threshold, property_bond_tensile_strength,
     property_bond_shear_strength, property_bond_youngs_modulus, property_bond_shear_modulus, property_bond_radius_ratio, property_bond_gap_ratio;
 
+extern const property property_softening_temperature, property_softening_rate, property_modulus_floor;
+
 /* Ratio to critical damping of the normal law: as given, or from the coefficient of restitution through `invert`, or 0. */
 double normal_damping_ratio(const contact_class *class, double (*invert)(double restitution));
 double interaction_value(const contact_class *class, const property *property);

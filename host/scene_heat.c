@@ -38,6 +38,8 @@ bool scene_has_temperature(const scene *s)
         if (scene_outputs(s, names[k]))
             return true;
     const effect *bond = scene_effect(s, -1, SLOT_BOND);
+    if (scene_effect(s, -1, SLOT_MODULUS))
+        return true;
     return scene_has_heat(s) || scene_tallies_heat(s) || (bond && bonding_reads_temperature(bond->law, bond->option));
 }
 
@@ -186,5 +188,8 @@ status scene_check_heat(reader *r)
             return document_fail(r->document, document_at(r->document, "materials[%d]", m), r->why,
                                  "the material `%s` lacks `%s`, which every scene with temperatures needs", s->material[m].name,
                                  property_specific_heat.key);
+    if (scene_outputs(s, "modulus_factor") && !scene_effect(s, -1, SLOT_MODULUS))
+        return document_fail(r->document, document_at(r->document, "output.fields"), r->why,
+                             "the field `modulus_factor` needs a law of the modulus, like {slot: modulus, law: exponential_softening}");
     return STATUS_OK;
 }

@@ -535,6 +535,7 @@ status simulation_begin_stage(simulation *sim, int stage, failure *why)
     change_bodies(sim, &sim->scene->stage[stage]);
     TRY(upload_movers(sim, why));
     TRY(begin_half_steps(sim, why));
+    TRY(softening_refresh(sim, why));
     TRY(simulation_enter_stage(sim, stage, why));
     return beams_find_depths(sim, why);
 }

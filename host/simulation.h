@@ -340,6 +340,10 @@ status ledger_read(simulation *sim, double *out, failure *why);
 /* Keeps the sums of grains that leave. */
 status ledger_leave(simulation *sim, const int32_t *index, int64_t count, failure *why);
 
+/* softening.c */
+/* Takes the factors of the grains' moduli from their temperatures; nothing without softening. */
+status softening_refresh(simulation *sim, failure *why);
+
 /* guard.c */
 typedef struct guard_finding {
     bool stop;

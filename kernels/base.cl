@@ -111,10 +111,11 @@ typedef struct contact {
     vec3 slip;           /* tangential relative velocity of the surfaces */
     vec3 spin_i, spin_j;
     real touch;          /* overlap whether or not the two act on each other with forces, m */
+    real modulus_i, modulus_j; /* factors of Young's moduli; 1 at a wall */
     real temperature_i, temperature_j; /* K; of a wall: that of the grain */
     real dt;             /* of the step to come */
     real span;           /* for which the forces act: the step to come, or the mean of two */
-    real lag;            /* time by which the velocities are older than the forces, s */
+    vec3 ahead, ahead_spin_i, ahead_spin_j; /* what carries relative velocity and spins on to the time of the forces, for the energies */
     /* what histories advance by: motion over the step that led here (under semi-implicit Euler that of its end) */
     real elapsed;        /* its length */
     real past_approach;

@@ -8,12 +8,30 @@ static const field field_rolling_stored = {"rolling_stored", PER_RECORD, FIELD_R
                                            "energy of the rolling spring after the last step"};
 static const field field_rolling_at = {"rolling_stiffness", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, "N m", "its stiffness then"};
 
+static const field field_half_gain = {"half_gain", PER_PARTICLE, FIELD_EXACT, 3, FIELD_STATE, "m/s", "half of what the velocity gained in the last step"};
+static const field field_half_turn = {"half_turn", PER_PARTICLE, FIELD_EXACT, 3, FIELD_STATE, "rad/s", "half of what the spin gained in the last step"};
+
+/* clang-format off */
+#define DISSIPATION                                                                  \
+    .slot = SLOT_DISSIPATION,                                                        \
+    .doc = "What every contact dissipates in a step, from the forces that act.",     \
+    .source = "docs/theory.md"
+/* clang-format on */
+
 const law law_dissipation_tracked = {
     .name = "tracked",
-    .slot = SLOT_DISSIPATION,
-    .doc = "What every contact dissipates in a step, from the forces that act.",
-    .source = "docs/theory.md",
-    .kernel_file = "effect/dissipation_tracked.cl",
+    DISSIPATION,
+    .kernel_file = "effect/dissipation_ahead.cl",
+    .more_files = {"effect/dissipation_tracked.cl"},
+    .pair_fields = {&field_half_gain, &field_half_turn, &field_tangential_stored, &field_tangential_at, &field_rolling_stored, &field_rolling_at},
+    .particle_fields = {&field_half_gain, &field_half_turn},
+};
+
+const law law_dissipation_synchronous = {
+    .name = "tracked, velocities at the time of the forces",
+    DISSIPATION,
+    .kernel_file = "none/dissipation_ahead.cl",
+    .more_files = {"effect/dissipation_tracked.cl"},
     .pair_fields = {&field_tangential_stored, &field_tangential_at, &field_rolling_stored, &field_rolling_at},
 };
 

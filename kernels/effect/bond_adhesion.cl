@@ -61,7 +61,7 @@ INLINE real adhesion_power(real x, int m, real y, int n)
 /* k d^a where the two touch. */
 INLINE real adhesion_force(const contact *c)
 {
-    real k = c->value[ADHESION_STIFFNESS], d = c->overlap;
+    real k = modulus_normal(c) * c->value[ADHESION_STIFFNESS], d = c->overlap;
     if (ADHESION_SHARED)
         return k * adhesion_power(ADHESION_RADIUS_QUARTERS < 0 ? c->radius_inverse : c->radius_eff, abs(ADHESION_RADIUS_QUARTERS), d, ADHESION_QUARTERS);
     bool touches = d > R(0.0);

@@ -1,7 +1,7 @@
 /* dissipation: what the forces of a contact take out of the motion in a step, the clamp included, and no spring stores: all of the energy that a
  * collision loses and no more (docs/theory.md, "The energy ledger"). History: energy and stiffness of the two springs after the last step. */
 #define DISSIPATION_PAIR_FIELDS(READ, WRITE)                                            \
-    WRITE(real, tangential_stored) WRITE(real, tangential_stiffness) WRITE(real, rolling_stored) WRITE(real, rolling_stiffness)
+    DISSIPATION_AHEAD_PAIR_FIELDS(READ, WRITE) WRITE(real, tangential_stored) WRITE(real, tangential_stiffness) WRITE(real, rolling_stored) WRITE(real, rolling_stiffness)
 #define DISSIPATION_LOAD(launch, k, s)                    \
     do {                                                  \
         (s).tangential = tangential_stored[k];            \
@@ -21,23 +21,20 @@ typedef struct dissipation_state {
     real tangential, tangential_at, rolling, rolling_at;
 } dissipation_state;
 
-/* The velocities at the time of the forces: those that the laws see, carried on by the contact's own forces over the lag of the integrator. */
+/* The velocities at the time of the forces. */
 typedef struct acting_rates {
     real approach;
     vec3 slip, turning;
 } acting_rates;
 
-INLINE acting_rates dissipation_rates(const contact *c, const response *out)
+INLINE acting_rates dissipation_rates(const contact *c)
 {
-    real lag = c->lag;
-    real mass = R(1.0) / c->mass_i + R(1.0) / c->mass_j;
-    real spin_i = R(2.5) / (c->mass_i * c->radius_i * c->radius_i), spin_j = R(2.5) / (c->mass_j * c->radius_j * c->radius_j);
-    real levers = c->arm_i * c->arm_i * spin_i + c->arm_j * c->arm_j * spin_j, uneven = c->arm_i * spin_i - c->arm_j * spin_j;
     acting_rates r;
-    r.approach = c->approach - lag * mass * out->normal;
-    r.slip = add_scaled(add_scaled(c->slip, lag * (mass + levers), out->tangential), lag * uneven, cross3(out->rolling, c->n));
-    r.turning = add_scaled(sub(c->spin_i, c->spin_j), lag * uneven, cross3(c->n, out->tangential));
-    r.turning = add_scaled(r.turning, lag * (spin_i + spin_j), out->rolling);
+    real gain = dot3(c->ahead, c->n);
+    vec3 levers = add_scaled(scale(c->arm_i, c->ahead_spin_i), c->arm_j, c->ahead_spin_j);
+    r.approach = c->approach + gain;
+    r.slip = add(c->slip, add(add_scaled(c->ahead, -gain, c->n), cross3(levers, c->n)));
+    r.turning = add(sub(c->spin_i, c->spin_j), sub(c->ahead_spin_i, c->ahead_spin_j));
     return r;
 }
 
@@ -56,7 +53,7 @@ INLINE real dissipation_spring(const spring_step *step, real stored, real at, ve
 
 INLINE dissipation dissipation_of(const contact *c, const response *out, dissipation_state *s)
 {
-    acting_rates rate = dissipation_rates(c, out);
+    acting_rates rate = dissipation_rates(c);
     dissipation lost;
     real sliding, turning;
     lost.normal = c->span * (out->normal - out->spring) * rate.approach;

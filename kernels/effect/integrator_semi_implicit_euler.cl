@@ -10,8 +10,6 @@
 #define INTEGRATOR_KEEP_SPIN(i, w)
 #define INTEGRATOR_AHEAD(kept, ahead) (kept)
 #define INTEGRATOR_DAMPING_LAG R(1.0)
-/* The velocities that the laws see are half a step older than the forces (docs/theory.md, "The energy ledger"). */
-#define INTEGRATOR_LAG R(0.5)
 
 INLINE precise3 integrate_velocity(precise3 velocity, vec3 acceleration, real dt)
 {

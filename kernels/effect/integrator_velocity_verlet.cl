@@ -6,7 +6,6 @@
 #define INTEGRATOR_VELOCITY(i, v) PRECISE_GRAIN3(half_velocity, i)
 #define INTEGRATOR_KEEP_VELOCITY(i, v) SET_GRAIN3(half_velocity, i, v)
 #define INTEGRATOR_AHEAD(kept, ahead) (ahead)
-#define INTEGRATOR_LAG R(0.0)
 /* The extrapolation makes a damper count twice towards the limit of the step (docs/theory.md). */
 #define INTEGRATOR_DAMPING_LAG R(2.0)
 

@@ -8,18 +8,18 @@
 
 INLINE void normal_force(const contact *c, response *out)
 {
-    out->spring = R(1.33333333333333333) * c->value[NORMAL_MODULUS] * c->contact_radius * c->overlap;
-    out->damper = c->value[NORMAL_DAMPING] * c->inertia_root * c->approach;
+    out->spring = R(1.33333333333333333) * modulus_normal(c) * c->value[NORMAL_MODULUS] * c->contact_radius * c->overlap;
+    out->damper = modulus_root(modulus_normal(c)) * c->value[NORMAL_DAMPING] * c->inertia_root * c->approach;
 }
 
 INLINE real normal_energy(const contact *c)
 {
-    return R(0.53333333333333333) * c->value[NORMAL_MODULUS] * c->contact_radius * c->overlap * c->overlap;
+    return R(0.53333333333333333) * modulus_normal(c) * c->value[NORMAL_MODULUS] * c->contact_radius * c->overlap * c->overlap;
 }
 
 /* Tangent stiffness 2 E* sqrt(r* d). */
 INLINE mode normal_mode(const contact *c)
 {
-    mode m = {R(2.0) * c->value[NORMAL_MODULUS] * c->contact_radius, c->value[NORMAL_DAMPING] * c->inertia_root};
+    mode m = {R(2.0) * modulus_normal(c) * c->value[NORMAL_MODULUS] * c->contact_radius, modulus_root(modulus_normal(c)) * c->value[NORMAL_DAMPING] * c->inertia_root};
     return m;
 }

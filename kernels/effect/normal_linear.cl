@@ -7,19 +7,19 @@
 
 INLINE void normal_force(const contact *c, response *out)
 {
-    real damping = c->overlap > R(0.0) ? c->value[NORMAL_DAMPING] * sqrt(c->mass_eff) : R(0.0);
-    out->spring = c->value[NORMAL_STIFFNESS] * c->overlap;
+    real damping = c->overlap > R(0.0) ? modulus_root(modulus_normal(c)) * c->value[NORMAL_DAMPING] * sqrt(c->mass_eff) : R(0.0);
+    out->spring = modulus_normal(c) * c->value[NORMAL_STIFFNESS] * c->overlap;
     out->damper = damping * c->approach;
 }
 
 INLINE real normal_energy(const contact *c)
 {
-    return R(0.5) * c->value[NORMAL_STIFFNESS] * c->overlap * c->overlap;
+    return R(0.5) * modulus_normal(c) * c->value[NORMAL_STIFFNESS] * c->overlap * c->overlap;
 }
 
 INLINE mode normal_mode(const contact *c)
 {
     real touching = c->overlap > R(0.0) ? R(1.0) : R(0.0);
-    mode m = {touching * c->value[NORMAL_STIFFNESS], touching * c->value[NORMAL_DAMPING] * sqrt(c->mass_eff)};
+    mode m = {touching * modulus_normal(c) * c->value[NORMAL_STIFFNESS], touching * modulus_root(modulus_normal(c)) * c->value[NORMAL_DAMPING] * sqrt(c->mass_eff)};
     return m;
 }

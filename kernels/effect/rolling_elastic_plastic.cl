@@ -41,8 +41,8 @@ INLINE vec3 rolling_rate(const contact *c, vec3 spin_i, vec3 spin_j)
 
 INLINE mode rolling_mode(const contact *c)
 {
-    mode m = {c->value[ROLLING_MODULUS] * c->contact_radius * c->radius_eff * c->radius_eff,
-              c->value[ROLLING_DAMPING] * sqrt(rolling_inertia(c) * c->contact_radius) * c->radius_eff};
+    mode m = {modulus_rolling(c) * c->value[ROLLING_MODULUS] * c->contact_radius * c->radius_eff * c->radius_eff,
+              modulus_root(modulus_rolling(c)) * c->value[ROLLING_DAMPING] * sqrt(rolling_inertia(c) * c->contact_radius) * c->radius_eff};
     return m;
 }
 
@@ -54,7 +54,7 @@ INLINE void rolling_moment(const contact *c, rolling_state *s, response *out)
     vec3 spring = add_scaled(before, c->elapsed, rolling_rate(c, c->past_spin_i, c->past_spin_j));
     vec3 trial = add_scaled(scale(-m.stiffness, spring), -m.damping, rate);
     real size = sqrt(dot3(trial, trial)), limit = c->value[ROLLING_FRICTION] * c->radius_eff * out->bearing;
-    real compliance = c->value[ROLLING_COMPLIANCE] * c->contact_inverse * c->radius_inverse * c->radius_inverse;
+    real compliance = modulus_inverse(modulus_rolling(c)) * c->value[ROLLING_COMPLIANCE] * c->contact_inverse * c->radius_inverse * c->radius_inverse;
     bool yields = size > limit, live = compliance > R(0.0);
     real factor = yields ? limit / size : R(1.0);
     out->rolling = scale(factor, trial);
@@ -73,6 +73,6 @@ INLINE void rolling_moment(const contact *c, rolling_state *s, response *out)
 
 INLINE real rolling_energy(const contact *c, const rolling_state *s, real normal)
 {
-    real compliance = c->value[ROLLING_COMPLIANCE] * c->contact_inverse * c->radius_inverse * c->radius_inverse;
+    real compliance = modulus_inverse(modulus_rolling(c)) * c->value[ROLLING_COMPLIANCE] * c->contact_inverse * c->radius_inverse * c->radius_inverse;
     return spring_energy(rolling_mode(c).stiffness, compliance, s->spring, c->value[ROLLING_FRICTION] * c->radius_eff * normal);
 }

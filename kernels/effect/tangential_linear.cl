@@ -9,6 +9,6 @@
 #define LEVER_ARM_SHRINKS R(1.0)
 #endif
 #define TANGENTIAL_RESCALED 0
-#define TANGENTIAL_STIFFNESS_OF(c) ((c)->overlap > R(0.0) ? (c)->value[TANGENTIAL_STIFFNESS] : R(0.0))
-#define TANGENTIAL_DAMPING_OF(c) ((c)->overlap > R(0.0) ? (c)->value[TANGENTIAL_DAMPING] * sqrt((c)->mass_eff) : R(0.0))
-#define TANGENTIAL_COMPLIANCE_OF(c) ((c)->overlap > R(0.0) ? (c)->value[TANGENTIAL_COMPLIANCE] : R(0.0))
+#define TANGENTIAL_STIFFNESS_OF(c) ((c)->overlap > R(0.0) ? modulus_tangential(c) * (c)->value[TANGENTIAL_STIFFNESS] : R(0.0))
+#define TANGENTIAL_DAMPING_OF(c) ((c)->overlap > R(0.0) ? modulus_root(modulus_tangential(c)) * (c)->value[TANGENTIAL_DAMPING] * sqrt((c)->mass_eff) : R(0.0))
+#define TANGENTIAL_COMPLIANCE_OF(c) ((c)->overlap > R(0.0) ? modulus_inverse(modulus_tangential(c)) * (c)->value[TANGENTIAL_COMPLIANCE] : R(0.0))

@@ -13,6 +13,6 @@
 #ifndef TANGENTIAL_RESCALED
 #define TANGENTIAL_RESCALED 0
 #endif
-#define TANGENTIAL_STIFFNESS_OF(c) ((c)->value[TANGENTIAL_MODULUS] * (c)->contact_radius)
-#define TANGENTIAL_DAMPING_OF(c) ((c)->value[TANGENTIAL_DAMPING] * (c)->inertia_root)
-#define TANGENTIAL_COMPLIANCE_OF(c) ((c)->value[TANGENTIAL_COMPLIANCE] * (c)->contact_inverse)
+#define TANGENTIAL_STIFFNESS_OF(c) (modulus_tangential(c) * (c)->value[TANGENTIAL_MODULUS] * (c)->contact_radius)
+#define TANGENTIAL_DAMPING_OF(c) (modulus_root(modulus_tangential(c)) * (c)->value[TANGENTIAL_DAMPING] * (c)->inertia_root)
+#define TANGENTIAL_COMPLIANCE_OF(c) (modulus_inverse(modulus_tangential(c)) * (c)->value[TANGENTIAL_COMPLIANCE] * (c)->contact_inverse)

@@ -1,5 +1,9 @@
 /* dissipation: nobody asks what contacts dissipate. */
 #define DISSIPATION_PAIR_FIELDS(READ, WRITE)
+#define DISSIPATION_PARTICLE_FIELDS(READ, WRITE)
+#define DISSIPATION_AHEAD(i) v3(R(0.0), R(0.0), R(0.0))
+#define DISSIPATION_AHEAD_SPIN(i) v3(R(0.0), R(0.0), R(0.0))
+#define DISSIPATION_KEEP(i, step)
 #define DISSIPATION_LOAD(launch, k, s) (s).unused = 0
 #define DISSIPATION_STORE(launch, k, s)
 

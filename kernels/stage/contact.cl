@@ -7,7 +7,8 @@
     BONDING_PAIR_FIELDS(READ, WRITE) BOND_PAIR_FIELDS(READ, WRITE) COHESION_PAIR_FIELDS(READ, WRITE)                           \
     SLIP_PAIR_FIELDS(READ, WRITE) TANGENTIAL_PAIR_FIELDS(READ, WRITE) ROLLING_PAIR_FIELDS(READ, WRITE)                                        \
     DISSIPATION_PAIR_FIELDS(READ, WRITE) LEDGER_PAIR_FIELDS(READ, WRITE) WALLS_PAIR_FIELDS(READ, WRITE)                                  \
-    TEMPERATURE_PAIR_FIELDS(READ, WRITE) CONDUCTION_PAIR_FIELDS(READ, WRITE) WALL_HEAT_PAIR_FIELDS(READ, WRITE) INTEGRATOR_PAIR_FIELDS(READ, WRITE)
+    TEMPERATURE_PAIR_FIELDS(READ, WRITE) MODULUS_PAIR_FIELDS(READ, WRITE) SOFTENING_PAIR_FIELDS(READ, WRITE)                       \
+    CONDUCTION_PAIR_FIELDS(READ, WRITE) WALL_HEAT_PAIR_FIELDS(READ, WRITE) INTEGRATOR_PAIR_FIELDS(READ, WRITE)
 #define PAIR_DECLARE PAIR_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PAIR_PASS PAIR_FIELDS(PASS, PASS)
 
@@ -39,6 +40,11 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     c->spin_j = ROTATION_LOAD(launch, j);
     c->past_spin_i = INTEGRATOR_PAST_SPIN(i, c->spin_i);
     c->past_spin_j = INTEGRATOR_PAST_SPIN(j, c->spin_j);
+    c->modulus_i = MODULUS_OF(i);
+    c->modulus_j = MODULUS_OF(j);
+    c->ahead = sub(DISSIPATION_AHEAD(i), DISSIPATION_AHEAD(j));
+    c->ahead_spin_i = DISSIPATION_AHEAD_SPIN(i);
+    c->ahead_spin_j = DISSIPATION_AHEAD_SPIN(j);
     c->mass_i = motion_mass(MOTION_GRAIN(i), mass[i]);
     c->mass_j = motion_mass(MOTION_GRAIN(j), mass[j]);
     c->class = composition_class(COMPOSITION_GRAIN(i), COMPOSITION_GRAIN(j));
@@ -78,6 +84,11 @@ INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_
     c->radius_j = c->radius_i;
     c->spin_i = ROTATION_LOAD(launch, i);
     c->past_spin_i = INTEGRATOR_PAST_SPIN(i, c->spin_i);
+    c->modulus_i = MODULUS_OF(i);
+    c->modulus_j = R(1.0);
+    c->ahead = DISSIPATION_AHEAD(i);
+    c->ahead_spin_i = DISSIPATION_AHEAD_SPIN(i);
+    c->ahead_spin_j = v3(R(0.0), R(0.0), R(0.0));
     c->mass_i = mass[i];
     c->mass_j = HEAVY;
     WALLS_CONTACT(launch, other[k], x, v, c, touch);
@@ -107,6 +118,7 @@ typedef struct contact_state {
     slip_state slip;
     tangential_state tangential;
     rolling_state rolling;
+    softening_state softening;
     dissipation_state dissipation;
     ledger_state ledger;
 } contact_state;
@@ -129,6 +141,8 @@ INLINE void contact_laws(contact *c, contact_state *s, response *out)
     cohesion_force(c, &s->cohesion, out);
     tangential_force(c, &s->slip, &s->tangential, out);
     rolling_moment(c, &s->rolling, out);
-    ledger_contact(&s->ledger, dissipation_of(c, out, &s->dissipation));
+    dissipation lost = dissipation_of(c, out, &s->dissipation);
+    lost.stiffness += softening_work(c, &s->softening);
+    ledger_contact(&s->ledger, lost);
     bond_shear(c, &s->bond, out);
 }

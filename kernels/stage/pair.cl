@@ -5,6 +5,7 @@
     SLIP_LOAD(launch, k, (s).slip);               \
     TANGENTIAL_LOAD(launch, k, (s).tangential);   \
     ROLLING_LOAD(launch, k, (s).rolling);         \
+    SOFTENING_LOAD(launch, k, (s).softening);     \
     DISSIPATION_LOAD(launch, k, (s).dissipation); \
     LEDGER_LOAD(launch, k, (s).ledger)
 #define PAIR_STORE_STATE(launch, k, s)            \
@@ -13,6 +14,7 @@
     SLIP_STORE(launch, k, (s).slip);              \
     TANGENTIAL_STORE(launch, k, (s).tangential);  \
     ROLLING_STORE(launch, k, (s).rolling);        \
+    SOFTENING_STORE(launch, k, (s).softening);    \
     DISSIPATION_STORE(launch, k, (s).dissipation);\
     LEDGER_STORE(launch, k, (s).ledger)
 
@@ -21,7 +23,6 @@
     c.dt = number(launch->dt);                                           \
     c.elapsed = number(INTEGRATOR_ELAPSED(launch));                      \
     c.span = number(launch->kick);                                       \
-    c.lag = INTEGRATOR_LAG * c.span;                                     \
     c.value = contact_constants + c.class * CONTACT_CONSTANTS;           \
     PAIR_LOAD_STATE(launch, k, s);                                       \
     contact_laws(&c, &s, &out);                                          \

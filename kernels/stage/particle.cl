@@ -4,7 +4,7 @@
     READ(exact, built_position) MOTION_PARTICLE_FIELDS(READ, WRITE) \
     ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE) TEMPERATURE_PARTICLE_FIELDS(READ, WRITE)                \
     SUBSTANCE_PARTICLE_FIELDS(READ, WRITE) ENVIRONMENT_PARTICLE_FIELDS(READ, WRITE) CONDUCTION_PARTICLE_FIELDS(READ, WRITE)             \
-    SOURCE_PARTICLE_FIELDS(READ, WRITE) THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE) LEDGER_PARTICLE_FIELDS(READ, WRITE)           \
+    SOURCE_PARTICLE_FIELDS(READ, WRITE) THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE) MODULUS_PARTICLE_FIELDS(READ, WRITE) DISSIPATION_PARTICLE_FIELDS(READ, WRITE) LEDGER_PARTICLE_FIELDS(READ, WRITE)           \
     INTEGRATOR_PARTICLE_FIELDS(READ, WRITE)
 #define PARTICLE_DECLARE PARTICLE_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PARTICLE_PASS PARTICLE_FIELDS(PASS, PASS)
@@ -61,6 +61,7 @@ INLINE void particle_heat(const clast_launch *launch, int i, const grain *g, gra
     precise held = THERMAL_GROUP_TEMPERATURE(launch, i, after);
     h->sources = dt * given + capacity * rounded(precise_sub(held, after));
     TEMPERATURE_STORE(i, held);
+    MODULUS_STORE(i, g, held);
     HEAT_TALLY_ADD(i, h);
 }
 
@@ -91,6 +92,7 @@ INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t P
     SET_GRAIN3(velocity, i, v2);
     ROTATION_STORE(launch, i, w2);
     ORIENTATION_ADVANCE(launch, i, rounded3(w1));
+    DISSIPATION_KEEP(i, &step);
     LEDGER_ADVANCE(launch, i, &step);
     precise3 since_built = precise3_sub(x1, PRECISE_GRAIN3(built_position, i));
     vec3 moved = rounded3(periodic_nearest(launch, precise3_sub(since_built, PRECISE3(launch->drift))));

@@ -243,7 +243,7 @@ static void test_sheared(void **state)
     const char *const bodies[] = {"", "  - {slot: body, law: viscous_damping, coefficient: 20}\n"};
     for (int b = 0; b < 2; b++) {
         double coarse = sheared_error(bodies[b], 2e-5), fine = sheared_error(bodies[b], 1e-5);
-        BETWEEN(coarse, 0.0, 0.2);
+        BETWEEN(coarse, 0.0, 0.05);
         BETWEEN(coarse / fine, 1.8, 2.3); /* first order */
     }
 }

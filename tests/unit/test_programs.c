@@ -53,7 +53,10 @@ static const law *const every_law[] = {
     &law_volumetric,
     &law_thermal_groups,
     &law_heat_tally,
+    &law_exponential_softening,
+    &law_softening_tracked,
     &law_dissipation_tracked,
+    &law_dissipation_synchronous,
     &law_ledger_energies,
 };
 #define LAWS (sizeof every_law / sizeof *every_law)
@@ -90,7 +93,9 @@ static void complete(live_laws *live)
     if (live->law[SLOT_BONDING] == &law_bonding_temperature)
         live->law[SLOT_TEMPERATURE] = &law_temperature_pairs;
     if (live->law[SLOT_LEDGER])
-        live->law[SLOT_DISSIPATION] = &law_dissipation_tracked;
+        live->law[SLOT_DISSIPATION] = live->law[SLOT_INTEGRATOR] ? &law_dissipation_synchronous : &law_dissipation_tracked;
+    if (live->law[SLOT_MODULUS])
+        live->law[SLOT_TEMPERATURE] = &law_temperature_grains;
     complete_heat(live);
     live->frozen = live->law[SLOT_TEMPERATURE] != NULL;
     const law *verlet = live->law[SLOT_ROTATION] ? &law_velocity_verlet_spin : &law_velocity_verlet;

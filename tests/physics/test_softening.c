@@ -1,0 +1,129 @@
+/* Moduli that fall with temperature: the closed form, every law of a contact with it, and the work that it does. */
+#include "case.h"
+#include "ledger.h"
+
+static const double young = 2.0e8, density = 2700.0, radius = 5.0e-3, nu = 0.3;
+
+/* TM Eq. 42 with floor and rate. */
+static double factor(double temperature, double critical, double rate, double floor)
+{
+    return fmax(floor, fmin(1.0, exp(rate * (1.0 - temperature / critical))));
+}
+
+/* Pairs in line, 1 um deep, of two materials at prescribed temperatures: the force is Hertz's with 1/E* = sum (1 - nu^2)/E(T). */
+static void test_closed_form(void **state)
+{
+    (void)state;
+    const double temperatures[][2] = {{300, 300}, {500, 500}, {500, 300}, {900, 450}, {300, 2000}, {2000, 2000}};
+    const double nu2 = 0.2, young2 = 5e7, d = 1e-6;
+    enum { PAIRS = COUNT_OF(temperatures) };
+    text t = {0};
+    put(&t, "effects:\n  - {slot: normal, law: hertz}\n  - {slot: modulus, law: exponential_softening}\nmaterials:\n"
+            "  - {name: a, density_kg_m3: 1000, youngs_modulus_pa: %g, poissons_ratio: %g, specific_heat_j_kgk: 100, softening_temperature_k: 400}\n"
+            "  - {name: b, density_kg_m3: 1000, youngs_modulus_pa: %g, poissons_ratio: %g, specific_heat_j_kgk: 100, softening_temperature_k: 350,"
+            " softening_rate: 2.5, modulus_floor_pa: %g}\n"
+            "interactions: [{between: default, normal_damping_ratio: 0}]\nparticles:\n", young, nu, young2, nu2, 0.1 * young2);
+    for (int p = 0; p < PAIRS; p++)
+        for (int k = 0; k < 2; k++) {
+            put(&t, "  - {name: g%d%c, material: %c, generator: list, thermal: prescribed, temperature_k: %g, items: [{radius_m: %g, position_m: [%.17g, %g, 0]}]}\n",
+                p, "ab"[k], "ab"[k], temperatures[p][k], radius, k * (2.0 * radius - d), 0.05 * p);
+        }
+    physics_case c = case_open(&t);
+    for (int again = 0; again < 2; again++) { /* as set by the host, and by the device */
+        int64_t count;
+        live_contact *contacts = case_contacts(&c, &count);
+        assert_int_equal(count, PAIRS);
+        for (int p = 0; p < PAIRS; p++) {
+            double ea = factor(temperatures[p][0], 400, 1, 0) * young, eb = factor(temperatures[p][1], 350, 2.5, 0.1) * young2;
+            double modulus = 1.0 / ((1 - nu * nu) / ea + (1 - nu2 * nu2) / eb);
+            RELATIVE(fabs(contacts[p].force[0]), 4.0 / 3.0 * modulus * sqrt(0.5 * radius) * pow(contacts[p].overlap, 1.5), 1e-9);
+        }
+        free(contacts);
+        case_run(&c, 1, 1e-12);
+    }
+    case_close(&c);
+}
+
+/* Impacts of hot grains that soften are those of cold ones whose modulus is as low: normal and tangential springs, rolling, all damping. */
+static void impact(const char *slots, double temperature, double scaled, double *out)
+{
+    text t = {0};
+    put(&t, "effects:\n  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin}\n  - {slot: rolling, law: elastic_plastic}\n%s"
+            "materials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %.17g, poissons_ratio: %g, specific_heat_j_kgk: 100, softening_temperature_k: 400}]\n"
+            "interactions: [{between: default, normal_damping_ratio: 0.3, friction_static: 0.4, rolling_friction: 0.2}]\n"
+            "walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]\n"
+            "particles:\n  - name: p\n    material: m\n    temperature_k: %g\n    generator: list\n    items:\n",
+        slots, density, scaled * young, nu, temperature);
+    for (int k = 0; k < 4; k++)
+        put_grain(&t, radius, (double[]){0.05 * k, 0, radius}, (double[]){0.4 * k, 0.1, -1}, (double[]){30.0 * k, 10, 5});
+    put_grain(&t, radius, (double[]){0, 0.05, 0.05}, (double[]){1, 0, 0.2}, (double[]){0, 10, 5});
+    put_grain(&t, 2 * radius, (double[]){3 * radius, 0.05, 0.05}, (double[]){0, 0, 0}, (double[]){20, 10, 5});
+    physics_case c = case_open(&t);
+    case_run(&c, 1500, 1e-6);
+    assert_int_equal(case_contact_sums(&c).contacts, 0);
+    double *v = case_field(&c, "velocity"), *w = case_field(&c, "spin");
+    memcpy(out, v, 18 * sizeof *v);
+    memcpy(out + 18, w, 18 * sizeof *w);
+    free(v);
+    free(w);
+    case_close(&c);
+}
+
+static void test_impacts(void **state)
+{
+    (void)state;
+    double hot[36], cold[36], stiff[36];
+    impact("  - {slot: modulus, law: exponential_softening}\n", 700.0, 1.0, hot);
+    impact("", 700.0, factor(700, 400, 1, 0), cold);
+    impact("", 700.0, 1.0, stiff);
+    double apart = 0.0;
+    for (int k = 0; k < 36; k++) {
+        NEAR(hot[k], cold[k], 1e-9 * (1.0 + fabs(cold[k])));
+        apart = fmax(apart, fabs(hot[k] - stiff[k]));
+    }
+    assert_true(apart > 1e-3);
+}
+
+/* A sphere that is heated on a hot floor, and sinks in: mechanical energy, with the work of the softening, stays the same. */
+static double imbalance(double dt)
+{
+    text t = {0};
+    double e[LEDGER_TERMS];
+    put(&t, "gravity_m_s2: [0, 0, -9.8]\neffects:\n  - {slot: normal, law: hertz}\n  - {slot: conduction, law: overlap_area}\n"
+            "  - {slot: modulus, law: exponential_softening}\n"
+            "materials: [{name: m, density_kg_m3: 3000, youngs_modulus_pa: 1.0e6, poissons_ratio: 0.3, conductivity_w_mk: 60,"
+            " specific_heat_j_kgk: 5, softening_temperature_k: 300, softening_rate: 2}]\n"
+            "output: {observables: [work_stiffness]}\n"
+            "interactions: [{between: default, normal_damping_ratio: 1}]\n"
+            "walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1], temperature_k: 700}]\n"
+            "particles:\n  - name: p\n    material: m\n    temperature_k: 300\n    generator: list\n    items:\n");
+    put_grain(&t, 1e-3, (double[]){0, 0, 1e-3}, (double[]){0, 0, 0}, (double[]){0, 0, 0});
+    physics_case c = case_open(&t);
+    case_run(&c, llround(0.2 / dt), dt);
+    MUST(ledger_read(c.sim, e, why));
+    double soft = factor(case_get(&c, "temperature", 0, 0), 300, 2, 0), elastic = case_contact_sums(&c).elastic;
+    RELATIVE(case_get(&c, "modulus_factor", 0, 0), soft, 1e-12);
+    BETWEEN(soft, 0.05, 0.5);
+    assert_true(e[4] < -0.1 * elastic);
+    double gap = case_sums(&c).kinetic + elastic + e[0] - e[4] - e[6]; /* dissipated_normal, work_stiffness, work_gravity */
+    case_close(&c);
+    return gap / elastic;
+}
+
+static void test_work(void **state)
+{
+    (void)state;
+    double coarse = imbalance(4e-5), fine = imbalance(2e-5);
+    BETWEEN(fabs(coarse), 0.0, 3e-3);
+    BETWEEN(coarse / fine, 1.8, 4.5); /* first order, or better */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_closed_form),
+        cmocka_unit_test(test_impacts),
+        cmocka_unit_test(test_work),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
