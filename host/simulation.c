@@ -38,16 +38,16 @@ static void measure_bed(simulation *sim, const bed *bed)
     }
 }
 
-/* Pairs of floats resolve a position by its distance from the origin, so that is put into the bed, on a coarse grid of powers of two. Near
- * the scene's own origin it stays there. */
+/* The origin of the device's positions in mixed precision: a bed's length below the bed, so that its coordinates share their binary place
+ * (kernels/precision/mixed.cl). On a coarse grid of powers of two, which keeps the scene's numbers round. */
 static void choose_origin(simulation *sim)
 {
-    double extent = 2.0 * sim->radius_max;
+    double extent = 8.0 * sim->radius_max;
     for (int c = 0; c < 3; c++)
-        extent = fmax(extent, sim->bed_high[c] - sim->bed_low[c]);
-    double grid = exp2(ceil(log2(extent)) + 2.0);
-    for (int c = 0; sim->mixed && isfinite(grid) && c < 3; c++)
-        sim->origin[c] = grid * rint(0.5 * (sim->bed_low[c] + sim->bed_high[c]) / grid);
+        extent = fmax(extent, 1.25 * (sim->bed_high[c] - sim->bed_low[c] + 2.0 * sim->radius_max));
+    double length = exp2(ceil(log2(extent)));
+    for (int c = 0; sim->mixed && isfinite(length) && c < 3; c++)
+        sim->origin[c] = 0.125 * length * floor((sim->bed_low[c] - sim->radius_max) / (0.125 * length)) - length;
 }
 
 static status check_periods(const simulation *sim, failure *why)

@@ -1,16 +1,17 @@
 /* periodic: nearest image, and positions kept inside the box. The length of a direction that is not periodic is 0, which
  * changes nothing. */
 /* Without comparisons: pocl packs those of x and y into one, and then no longer vectorises over pairs. */
-INLINE precise periodic_nearest1(precise d, exact stored)
+INLINE real periodic_images(real d, real length)
 {
-    precise length = precise_load(stored);
-    return precise_image(d, rint(rounded(d) * (R(1.0) / (rounded(length) + R(1e-30)))), length);
+    return rint(d * (R(1.0) / (length + R(1e-30))));
 }
 
-INLINE precise3 periodic_nearest(const clast_launch *launch, precise3 d)
+INLINE apart3 periodic_nearest(const clast_launch *launch, apart3 d)
 {
-    return precise3_of(periodic_nearest1(d.x, launch->length[0]), periodic_nearest1(d.y, launch->length[1]),
-                       periodic_nearest1(d.z, launch->length[2]));
+    precise x = precise_load(launch->length[0]), y = precise_load(launch->length[1]), z = precise_load(launch->length[2]);
+    vec3 v = apart_vector(d);
+    vec3 n = v3(periodic_images(v.x, rounded(x)), periodic_images(v.y, rounded(y)), periodic_images(v.z, rounded(z)));
+    return apart_image(d, n, x, y, z);
 }
 
 INLINE precise periodic_wrap1(precise x, exact stored_low, exact stored_length)

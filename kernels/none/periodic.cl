@@ -1,5 +1,5 @@
 /* periodic: no periodic direction. */
-INLINE precise3 periodic_nearest(const clast_launch *launch, precise3 d)
+INLINE apart3 periodic_nearest(const clast_launch *launch, apart3 d)
 {
     (void)launch;
     return d;

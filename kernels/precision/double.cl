@@ -57,12 +57,6 @@ INLINE precise precise_add_scaled(precise a, real s, precise b)
     return a + s * b;
 }
 
-/* d - n length */
-INLINE precise precise_image(precise d, real n, precise length)
-{
-    return d - length * n;
-}
-
 INLINE precise precise_quotient(precise a, precise b)
 {
     return a / b;
@@ -133,7 +127,29 @@ INLINE precise3 precise3_cross(precise3 a, precise3 b)
     return cross3(a, b);
 }
 
-INLINE real sphere_overlap(precise3 d, real distance, precise radius_i, precise radius_j)
+typedef vec3 apart3;
+
+INLINE apart3 apart_of(precise3 to, precise3 from)
+{
+    return sub(to, from);
+}
+
+INLINE apart3 apart_less(apart3 a, precise3 b)
+{
+    return sub(a, b);
+}
+
+INLINE vec3 apart_vector(apart3 a)
+{
+    return a;
+}
+
+INLINE apart3 apart_image(apart3 a, vec3 n, precise x, precise y, precise z)
+{
+    return v3(a.x - x * n.x, a.y - y * n.y, a.z - z * n.z);
+}
+
+INLINE real sphere_overlap(apart3 d, real distance, precise radius_i, precise radius_j)
 {
     (void)d;
     return radius_i + radius_j - distance;

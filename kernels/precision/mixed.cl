@@ -3,9 +3,7 @@
  * orientations, the places of walls. In memory such a number is 64 bits (`exact`), the size of a double, so that both precisions share
  * their structs and their layouts. Sums and products of two floats are split without error (Knuth, The Art of Computer Programming 2,
  * sec. 4.2.2; Dekker 1971). A fused multiply-add gives the error of a product; contracting others must not change what is split, hence the
- * pragma. */
-#pragma OPENCL FP_CONTRACT OFF
-
+ * pragma, in these functions only: the laws are contracted as in double precision. */
 /* Stands for an infinite mass: its square, and its product with a square of a length, are numbers still. */
 #define HEAVY R(1e16)
 /* Of the size of a wall's face: positions in a face are known better than this. */
@@ -66,6 +64,7 @@ INLINE real rounded(precise a)
 /* a + b where |a| >= |b|, or a = 0. */
 INLINE precise precise_join(real a, real b)
 {
+#pragma OPENCL FP_CONTRACT OFF
     precise r;
     r.hi = a + b;
     r.lo = b - (r.hi - a);
@@ -75,6 +74,7 @@ INLINE precise precise_join(real a, real b)
 /* a + b without error. */
 INLINE precise precise_sum(real a, real b)
 {
+#pragma OPENCL FP_CONTRACT OFF
     precise r;
     r.hi = a + b;
     real taken = r.hi - a;
@@ -85,6 +85,7 @@ INLINE precise precise_sum(real a, real b)
 /* a b without error. */
 INLINE precise precise_product(real a, real b)
 {
+#pragma OPENCL FP_CONTRACT OFF
     precise r;
     r.hi = a * b;
     r.lo = fma(a, b, -r.hi);
@@ -93,18 +94,21 @@ INLINE precise precise_product(real a, real b)
 
 INLINE precise precise_add(precise a, precise b)
 {
+#pragma OPENCL FP_CONTRACT OFF
     precise s = precise_sum(a.hi, b.hi);
     return precise_join(s.hi, s.lo + (a.lo + b.lo));
 }
 
 INLINE precise precise_sub(precise a, precise b)
 {
+#pragma OPENCL FP_CONTRACT OFF
     precise s = precise_sum(a.hi, -b.hi);
     return precise_join(s.hi, s.lo + (a.lo - b.lo));
 }
 
 INLINE precise precise_mul(precise a, precise b)
 {
+#pragma OPENCL FP_CONTRACT OFF
     precise p = precise_product(a.hi, b.hi);
     return precise_join(p.hi, fma(a.hi, b.lo, fma(a.lo, b.hi, p.lo)));
 }
@@ -112,14 +116,9 @@ INLINE precise precise_mul(precise a, precise b)
 /* a + s b */
 INLINE precise precise_add_scaled(precise a, real s, precise b)
 {
+#pragma OPENCL FP_CONTRACT OFF
     precise p = precise_product(s, b.hi), t = precise_sum(a.hi, p.hi);
     return precise_join(t.hi, t.lo + (a.lo + fma(s, b.lo, p.lo)));
-}
-
-/* d - n length, for the whole number n that makes it small */
-INLINE precise precise_image(precise d, real n, precise length)
-{
-    return precise_add_scaled(d, -n, length);
 }
 
 INLINE precise precise_quotient(precise a, precise b)
@@ -155,6 +154,7 @@ INLINE precise precise_max(precise a, precise b)
 /* One step of Newton's method on the root of the nearest real. */
 INLINE precise precise_root(precise a)
 {
+#pragma OPENCL FP_CONTRACT OFF
     bool some = a.hi > R(0.0);
     real h = sqrt(some ? a.hi : R(1.0));
     real rest = fma(-h, h, a.hi) + a.lo;
@@ -214,17 +214,62 @@ INLINE precise3 precise3_cross(precise3 a, precise3 b)
     return precise3_of(precise_sub(precise_mul(a.y, b.z), precise_mul(a.z, b.y)), precise_sub(precise_mul(a.z, b.x), precise_mul(a.x, b.z)), precise_sub(precise_mul(a.x, b.y), precise_mul(a.y, b.x)));
 }
 
-/* (ri + rj) - |d| as ((ri + rj)^2 - d^2)/((ri + rj) + |d|), the squares and their difference without what float would lose: `distance`
- * is |d| in float. */
-INLINE real sphere_overlap(precise3 d, real distance, precise radius_i, precise radius_j)
+/* The way between two places. Coordinates lie far from 0 (host/simulation.c), so that those of neighbours differ by few bits and the
+ * difference of their high parts is exact; what is left is small and added where it counts. */
+typedef struct apart3 {
+    vec3 whole, rest;
+} apart3;
+
+INLINE apart3 apart_of(precise3 to, precise3 from)
 {
-    precise sum = precise_add(radius_i, radius_j);
-    precise r2 = precise_product(sum.hi, sum.hi), x2 = precise_product(d.x.hi, d.x.hi), y2 = precise_product(d.y.hi, d.y.hi),
-            z2 = precise_product(d.z.hi, d.z.hi);
-    precise xy = precise_sum(x2.hi, y2.hi), xyz = precise_sum(xy.hi, z2.hi);
-    real crossed = fma(sum.hi, sum.lo, -fma(d.x.hi, d.x.lo, fma(d.y.hi, d.y.lo, d.z.hi * d.z.lo)));
-    real small = ((r2.lo - x2.lo) - (y2.lo + z2.lo)) - (xy.lo + xyz.lo);
-    return ((r2.hi - xyz.hi) + fma(R(2.0), crossed, small)) / (sum.hi + distance);
+    apart3 r;
+    real one = fma(R(0.0), to.y.lo, R(1.0));
+    r.whole = v3(to.x.hi - from.x.hi, fma(to.y.hi, one, -from.y.hi), to.z.hi - from.z.hi);
+    r.rest = v3(to.x.lo - from.x.lo, to.y.lo - from.y.lo, to.z.lo - from.z.lo);
+    return r;
+}
+
+INLINE apart3 apart_less(apart3 a, precise3 b)
+{
+    a.whole = sub(a.whole, v3(b.x.hi, b.y.hi, b.z.hi));
+    a.rest = sub(a.rest, v3(b.x.lo, b.y.lo, b.z.lo));
+    return a;
+}
+
+INLINE vec3 apart_vector(apart3 a)
+{
+    return add(a.whole, a.rest);
+}
+
+/* Less n times a length, for the whole number n that makes it small: exact where n is 1 or -1. */
+INLINE apart3 apart_image(apart3 a, vec3 n, precise x, precise y, precise z)
+{
+    a.whole = v3(fma(-n.x, x.hi, a.whole.x), fma(-n.y, y.hi, a.whole.y), fma(-n.z, z.hi, a.whole.z));
+    a.rest = v3(fma(-n.x, x.lo, a.rest.x), fma(-n.y, y.lo, a.rest.y), fma(-n.z, z.lo, a.rest.z));
+    return a;
+}
+
+/* x = whole numbers of a quantum + the rest: of a few more than 11 bits, so that sums of their squares are exact in float. Adding and
+ * taking away `magic`, whose last place is the quantum, rounds to it. */
+INLINE real quantised(real x, real magic)
+{
+#pragma OPENCL FP_CONTRACT OFF
+    real moved = x + magic;
+    return moved - magic;
+}
+
+/* (ri + rj) - |d| = ((ri + rj)^2 - d^2)/((ri + rj) + |d|): in the difference of squares those of whole quanta cancel exactly, and the rest is
+ * small enough for float. radius_i is not the larger one; `distance` is |d| in float. */
+INLINE real sphere_overlap(apart3 d, real distance, precise radius_i, precise radius_j)
+{
+#pragma OPENCL FP_CONTRACT OFF
+    real sum = radius_j.hi + radius_i.hi, magic = R(6144.0) * sum;
+    real s = quantised(sum, magic), x = quantised(d.whole.x, magic), y = quantised(d.whole.y, magic), z = quantised(d.whole.z, magic);
+    real sr = (radius_i.hi - (s - radius_j.hi)) + (radius_i.lo + radius_j.lo);
+    real xr = (d.whole.x - x) + d.rest.x, yr = (d.whole.y - y) + d.rest.y, zr = (d.whole.z - z) + d.rest.z;
+    real squares = fma(-z, z, fma(-y, y, fma(-x, x, s * s)));
+    real rest = fma(-zr, zr + z + z, fma(-yr, yr + y + y, fma(-xr, xr + x + x, fma(sr, sr + s + s, squares))));
+    return rest / (sum + distance);
 }
 
 INLINE bool is_number(real a)

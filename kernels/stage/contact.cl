@@ -28,8 +28,8 @@ INLINE void contact_complete(contact *c)
 INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR_DECLARE)
 {
     int i = owner[k], j = other[k];
-    precise3 apart_by = periodic_nearest(launch, precise3_sub(PRECISE_GRAIN3(position, j), PRECISE_GRAIN3(position, i)));
-    vec3 d = rounded3(apart_by);
+    apart3 way = periodic_nearest(launch, apart_of(PRECISE_GRAIN3(position, j), PRECISE_GRAIN3(position, i)));
+    vec3 d = apart_vector(way);
     vec3 v_i = GRAIN3(velocity, i), v_j = GRAIN3(velocity, j), u = sub(v_i, v_j);
     vec3 past = sub(INTEGRATOR_PAST_VELOCITY(i, v_i), INTEGRATOR_PAST_VELOCITY(j, v_j));
     real d2 = dot3(d, d);
@@ -52,7 +52,7 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     real both = R(1.0) / (sum * mass_sum); /* one division for both reciprocals */
     bool apart = d2 > R(0.0);
     real inverse = R(1.0) / sqrt(apart ? d2 : R(1.0)), distance = d2 * inverse;
-    real overlap = sphere_overlap(apart_by, distance, radius_i, radius_j);
+    real overlap = sphere_overlap(way, distance, radius_i, radius_j);
     c->gap = apart ? -overlap : R(1e30);
     overlap = apart && overlap > R(0.0) ? overlap : R(0.0);
     c->touch = overlap;

@@ -317,9 +317,9 @@ __kernel void guard_records(const clast_launch launch, __global const int *restr
     int where = -1;
     for (int k = first; k < end; k++) {
         int i = owner[k], j = other[k];
-        precise3 d = periodic_nearest(&launch, precise3_sub(PRECISE_GRAIN3(position, j), PRECISE_GRAIN3(position, i)));
+        apart3 d = periodic_nearest(&launch, apart_of(PRECISE_GRAIN3(position, j), PRECISE_GRAIN3(position, i)));
         precise radius_i = precise_load(radius[i]), radius_j = precise_load(radius[j]);
-        real smaller = fmin(rounded(radius_i), rounded(radius_j)), distance = sqrt(dot3(rounded3(d), rounded3(d)));
+        real smaller = fmin(rounded(radius_i), rounded(radius_j)), distance = sqrt(dot3(apart_vector(d), apart_vector(d)));
         real ratio = sphere_overlap(d, distance, radius_i, radius_j) / smaller;
         if (ratio > most) {
             most = ratio;

@@ -94,8 +94,8 @@ INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t P
     ORIENTATION_ADVANCE(launch, i, rounded3(w1));
     DISSIPATION_KEEP(i, &step);
     LEDGER_ADVANCE(launch, i, &step);
-    precise3 since_built = precise3_sub(x1, PRECISE_GRAIN3(built_position, i));
-    vec3 moved = rounded3(periodic_nearest(launch, precise3_sub(since_built, PRECISE3(launch->drift))));
+    apart3 since_built = apart_less(apart_of(x1, PRECISE_GRAIN3(built_position, i)), PRECISE3(launch->drift));
+    vec3 moved = apart_vector(periodic_nearest(launch, since_built));
     return dot3(moved, moved);
 }
 

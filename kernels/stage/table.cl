@@ -106,7 +106,7 @@ INLINE bool table_pairs(const clast_launch *launch, real skin, int i, precise3 p
                         __global const exact *restrict radius, __global const int *restrict id)
 {
     precise radius_j = precise_load(radius[j]);
-    vec3 d = rounded3(periodic_nearest(launch, precise3_sub(PRECISE_GRAIN3(position, j), place)));
+    vec3 d = apart_vector(periodic_nearest(launch, apart_of(PRECISE_GRAIN3(position, j), place)));
     real reach = rounded(radius_i) + rounded(radius_j) + skin;
     bool owns = precise_less(radius_i, radius_j) || (!precise_less(radius_j, radius_i) && id[j] > id_i);
     return j != i && owns && dot3(d, d) < reach * reach;
@@ -315,8 +315,8 @@ __kernel void table_travel(const clast_launch launch, __global const exact *rest
     int chunk = get_global_id(0), first = chunk * SCAN_CHUNK, end = min(first + SCAN_CHUNK, launch.particle_count);
     real most = R(0.0);
     for (int i = first; i < end; i++) {
-        precise3 since_built = precise3_sub(PRECISE_GRAIN3(position, i), PRECISE_GRAIN3(built_position, i));
-        vec3 moved = rounded3(periodic_nearest(&launch, precise3_sub(since_built, PRECISE3(launch.drift))));
+        apart3 since_built = apart_less(apart_of(PRECISE_GRAIN3(position, i), PRECISE_GRAIN3(built_position, i)), PRECISE3(launch.drift));
+        vec3 moved = apart_vector(periodic_nearest(&launch, since_built));
         most = fmax(most, dot3(moved, moved));
     }
     partial[chunk] = precise_store(precise_from(most));
