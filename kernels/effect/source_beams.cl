@@ -32,7 +32,7 @@ INLINE real source_heat(const clast_launch *launch, __global const clast_beam *b
     for (int b = 0; b < BEAM_COUNT; b++) {
         const clast_beam one = beam[b];
         vec3 along = from3(one.direction);
-        vec3 d = rounded3(periodic_nearest(launch, precise3_from(sub(g->position, from3(one.position)))));
+        vec3 d = apart_vector(periodic_nearest(launch, apart_of(precise3_from(g->position), PRECISE3(one.position))));
         d = add_scaled(d, -dot3(d, along), along);
         real intensity = beam_intensity(&one, dot3(d, d));
         if (intensity <= R(0.0))
