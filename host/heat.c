@@ -341,3 +341,18 @@ status heat_limit_find(simulation *sim, heat_limit *out, failure *why)
     *out = (heat_limit){least[0], least[1], least[2], least[3]};
     return result;
 }
+
+status heat_enqueue_coefficients(simulation *sim, failure *why)
+{
+    heat_sums sums;
+    clast_launch launch = launch_values(sim);
+    cl_kernel records = launch_kernel(sim, "heat_conductances"), grains = launch_kernel(sim, "heat_surfaces");
+    TRY(heat_observe(sim, &sums, why));
+    TRY(launch_pass(records, "heat_conductances", &launch, why));
+    TRY(launch_bind(sim, "heat_conductances", 1, why));
+    TRY(launch_run(sim, records, "heat_conductances", sim->table.record_count, CLAST_BLOCK, why));
+    TRY(observe_partial(sim, sim->stride, why));
+    TRY(launch_set(grains, "heat_surfaces", why, sim->mixed ? "Lmf" : "Lmd", &launch, sim->partial, hottest_possible(sim, sums.highest)));
+    TRY(launch_bind(sim, "heat_surfaces", 3, why));
+    return launch_run(sim, grains, "heat_surfaces", sim->count, CLAST_BLOCK, why);
+}

@@ -40,6 +40,7 @@ static const stage_list stage_lists[] = {
     {"beam_surface", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"beam_depth", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_sums", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_surfaces", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
 };
 
 /* The order in which PAIR_FIELDS and PARTICLE_FIELDS name the slots. */
@@ -187,7 +188,7 @@ status launch_open(simulation *sim, failure *why)
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
                                         "particle_synchronise", "step_loop", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
-                                        "heat_conductances", "heat_limit", "heat_sums", "heat_areas",
+                                        "heat_conductances", "heat_limit", "heat_sums", "heat_surfaces", "heat_areas",
                                         "heat_frozen_given", "heat_frozen_links", "heat_frozen_stage", "heat_frozen_error",
                                         "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_spectrum",
                                         "beam_bounds", "beam_surface", "beam_depth"};

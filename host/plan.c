@@ -68,6 +68,8 @@ static status collect_stages(simulation *sim, plan *out, failure *why)
         stage->stage = &out->scene->stage[s];
         TRY(simulation_begin_stage(sim, s, why));
         stage->live = sim->live;
+        if (out->biot_contact)
+            TRY(heat_biot(sim, out->biot_contact, out->biot_surface, why));
         if (stage->stage->frozen) {
             TRY(plan_frozen(sim, stage, why));
             continue;
@@ -141,12 +143,22 @@ static status refuse_unstable(const plan *p, failure *why)
     return STATUS_OK;
 }
 
+static status allocate_biot(const scene *scene, plan *out, failure *why)
+{
+    if (!scene_has_heat(scene))
+        return STATUS_OK;
+    out->biot_contact = calloc((size_t)scene->material_count, sizeof *out->biot_contact);
+    out->biot_surface = calloc((size_t)scene->material_count, sizeof *out->biot_surface);
+    return out->biot_contact && out->biot_surface ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory while planning");
+}
+
 static status make_plan(scene *scene, const bed *bed, simulation *sim, plan *out, failure *why)
 {
     collect_groups(bed, out);
     out->unused = plan_unused(scene, bed);
     if (!out->unused)
         return fail(why, STATUS_ERROR, "out of memory while planning");
+    TRY(allocate_biot(scene, out, why));
     TRY(collect_stages(sim, out, why));
     for (int s = 0; s < scene->stage_count && out->bond_count == 0; s++) {
         free(out->bond);
@@ -192,6 +204,8 @@ static status plan_scene(scene *scene, const bed *bed, device *device, const cha
     for (int k = 0; p.unused && p.unused[k]; k++)
         free(p.unused[k]);
     free(p.unused);
+    free(p.biot_contact);
+    free(p.biot_surface);
     free(p.bond);
     free(p.group);
     free(p.stage);

@@ -49,6 +49,7 @@ typedef struct plan {
     int64_t overlap_i, overlap_j;
     int stage_count;
     plan_stage *stage;
+    double *biot_contact, *biot_surface; /* by material, the largest of all stages' starts; NULL without temperatures */
     char **unused; /* places in the scene, as --set writes them; ends with NULL */
     int field_count;
     plan_field field[SIMULATION_FIELDS_MAX];

@@ -125,6 +125,16 @@ static json_t *probe(const plan_probe *of)
     return out;
 }
 
+/* By material, or null without heat. */
+static json_t *biot(const plan *p)
+{
+    json_t *list = p->biot_contact ? json_array() : json_null();
+    for (int m = 0; p->biot_contact && m < p->scene->material_count; m++)
+        json_array_append_new(list, json_pack("{s:s, s:f, s:f}", "material", p->scene->material[m].name, "contacts", p->biot_contact[m], "surface",
+                                              p->biot_surface[m]));
+    return list;
+}
+
 status plan_write_json(const plan *p, failure *why)
 {
     char device[1024];
@@ -141,6 +151,7 @@ status plan_write_json(const plan *p, failure *why)
     json_object_set_new(root, "groups", groups(p));
     json_object_set_new(root, "overlap_max", number(p->overlap_max));
     json_object_set_new(root, "unused", unused);
+    json_object_set_new(root, "biot", biot(p));
     json_object_set_new(root, "stages", stages(p));
     json_object_set_new(root, "bonds", bonds(p));
     json_object_set_new(root, "memory", memory(p));

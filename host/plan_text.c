@@ -66,12 +66,35 @@ static bool slot_is_live(const plan *p, slot_id slot)
     return false;
 }
 
+#define BIOT_LARGE 0.1
+
 static void print_unused(const plan *p)
 {
     if (p->unused[0])
         printf("\nGiven, but nothing in this scene uses it\n");
     for (int k = 0; p->unused[k]; k++)
         printf("  %s\n", p->unused[k]);
+}
+
+static void print_biot(const plan *p)
+{
+    double most = 0.0;
+    if (!p->biot_contact)
+        return;
+    printf("\nBiot numbers (grains count as isothermal; small is good)\n");
+    for (int m = 0; m < p->scene->material_count; m++) {
+        printf("  %-16s", p->scene->material[m].name);
+        if (p->biot_contact[m] > 0.0)
+            printf("contacts %.3g", p->biot_contact[m]);
+        else
+            printf("contacts none yet");
+        if (p->biot_surface[m] > 0.0)
+            printf(", surface %.3g", p->biot_surface[m]);
+        printf("\n");
+        most = fmax(most, fmax(p->biot_contact[m], p->biot_surface[m]));
+    }
+    if (most > BIOT_LARGE)
+        printf("  WARNING: above %g a grain is not isothermal, and temperatures here are those of its mean at best\n", BIOT_LARGE);
 }
 
 /* One row a slot, one column a stage; the last column is not padded. */
@@ -233,6 +256,7 @@ void plan_write_text(const plan *p)
     print_laws(p);
     print_bonds(p);
     print_unused(p);
+    print_biot(p);
     print_steps(p);
     print_memory(p);
     printf("\nKernel arguments\n");

@@ -13,6 +13,7 @@
 typedef struct trial {
     scene *scene;
     const bed *bed;
+    size_t grain_place;        /* of the constants of grains, behind those of contacts */
     size_t stage_bytes, bytes; /* of one stage's constants, and of all */
     double *before, *after;
     live_laws *live_before, *live_after;
@@ -26,16 +27,20 @@ static void evaluate(const trial *t, double *constants, live_laws *live)
     live_laws_of(t->scene, t->bed, &all);
     for (int s = 0; s < t->scene->stage_count; s++) {
         live_laws_in_stage(t->scene, &all, s, &live[s]);
-        live_class_constants(&live[s], t->scene, s, constants + (size_t)s * t->stage_bytes / sizeof(double));
+        double *own = constants + (size_t)s * t->stage_bytes / sizeof(double);
+        live_class_constants(&live[s], t->scene, s, own);
+        if (live[s].law[SLOT_TEMPERATURE])
+            live_grain_constants(&live[s], t->scene, s, own + t->grain_place);
     }
 }
 
 /* Room for one stage: the laws of the union have the most constants. A changed value may call for other derived laws, hence the reserve. */
-static size_t room(const scene *scene, const bed *bed)
+static size_t room(const scene *scene, const bed *bed, size_t *grain_place)
 {
     live_laws all;
     live_laws_of(scene, bed, &all);
-    return sizeof(double) * (size_t)(live_constant_count(&all) + LAW_PARAMETERS_MAX) * (size_t)live_class_count(&all, scene);
+    *grain_place = (size_t)(live_constant_count(&all) + LAW_PARAMETERS_MAX) * (size_t)live_class_count(&all, scene);
+    return sizeof(double) * (*grain_place + (size_t)(live_grain_constant_count(&all) + LAW_PARAMETERS_MAX) * (size_t)scene->material_count);
 }
 
 static bool matters(trial *t, double *value)
@@ -97,7 +102,8 @@ static void try_stage(trial *t, int index)
 char **plan_unused(scene *scene, const bed *bed)
 {
     size_t stages = (size_t)scene->stage_count;
-    trial t = {.scene = scene, .bed = bed, .stage_bytes = room(scene, bed)};
+    trial t = {.scene = scene, .bed = bed};
+    t.stage_bytes = room(scene, bed, &t.grain_place);
     t.bytes = stages * t.stage_bytes;
     t.before = calloc(1, t.bytes);
     t.after = calloc(1, t.bytes);

@@ -298,6 +298,10 @@ typedef struct heat_sums {
 } heat_sums;
 status heat_observe(simulation *sim, heat_sums *out, failure *why);
 status heat_limit_find(simulation *sim, heat_limit *out, failure *why);
+/* Conductances of the records where their heat stands, and of the grains' surfaces among the partial sums, W/K. */
+status heat_enqueue_coefficients(simulation *sim, failure *why);
+/* heat_biot.c: raises the largest Biot numbers of every material, by contacts and by surfaces, to those there are now. */
+status heat_biot(simulation *sim, double *contact, double *surface, failure *why);
 
 /* beams.c: all do nothing where no source is live */
 status beams_create(simulation *sim, failure *why);

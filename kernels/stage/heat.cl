@@ -71,3 +71,14 @@ __kernel void heat_sums(const clast_launch launch, __global const int *restrict 
     for (int q = 0; q < HEAT_SUMS; q++)
         partial[HEAT_SUMS * chunk + q] = precise_store(sum[q]);
 }
+
+/* What draws every grain's temperature towards the environment's, from a surface at most `hottest`, W/K. */
+__kernel void heat_surfaces(const clast_launch launch, __global exact *restrict coefficient, const real hottest PARTICLE_DECLARE)
+{
+    int i = get_global_id(0);
+    grain g;
+    if (i >= launch.particle_count)
+        return;
+    particle_grain(&launch, i, &g PARTICLE_PASS);
+    coefficient[i] = precise_store(precise_from(convection_coefficient(&g, g.temperature) + radiation_coefficient(&g, hottest)));
+}
