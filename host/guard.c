@@ -104,6 +104,9 @@ static status check_overlaps(simulation *sim, guard_finding *out, failure *why)
 status guard_check(simulation *sim, guard_finding *out, failure *why)
 {
     out->stop = false;
+    servo_guard(sim, out);
+    if (out->stop)
+        return STATUS_OK;
     TRY(check_grains(sim, out, why));
     return out->stop ? STATUS_OK : check_overlaps(sim, out, why);
 }

@@ -162,6 +162,8 @@ static bool has_kernel(const simulation *sim, const char *name)
         return sim->live.law[SLOT_SOURCE] != NULL;
     if (strncmp(name, "heat_", 5) == 0)
         return sim->live.law[SLOT_TEMPERATURE] != NULL;
+    if (strncmp(name, "servo_", 6) == 0)
+        return sim->live.servo;
     if (strstr(name, "_bond_"))
         return sim->live.law[SLOT_BOND] != NULL;
     return !strstr(name, "_walls") || sim->live.law[SLOT_WALLS];
@@ -187,7 +189,7 @@ status launch_open(simulation *sim, failure *why)
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
-                                        "particle_synchronise", "step_loop", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
+                                        "particle_synchronise", "step_loop", "servo_place", "servo_stage", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
                                         "heat_conductances", "heat_limit", "heat_sums", "heat_surfaces", "heat_areas",
                                         "heat_frozen_given", "heat_frozen_links", "heat_frozen_stage", "heat_frozen_error",
                                         "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_spectrum",

@@ -56,6 +56,7 @@ static double prescribed_speed(const simulation *sim)
         double w = sqrt(pow(pose.spin[0], 2) + pow(pose.spin[1], 2) + pow(pose.spin[2], 2));
         most = fmax(most, v + w * sqrt(span));
     }
+    most += servo_speed_max(sim);
     return most;
 }
 

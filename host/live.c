@@ -152,6 +152,7 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         out->law[SLOT_DISSIPATION] = scene->integrator == INTEGRATOR_VELOCITY_VERLET ? &law_dissipation_synchronous : &law_dissipation_tracked;
     if (out->law[SLOT_LEDGER] && out->law[SLOT_MODULUS])
         out->law[SLOT_SOFTENING] = &law_softening_tracked;
+    out->servo = scene_has_servo(scene);
     if (scene_outputs(scene, "orientation"))
         out->law[SLOT_ORIENTATION] = &law_orientation_quaternion;
     const law *verlet = turning ? &law_velocity_verlet_spin : &law_velocity_verlet;
@@ -222,6 +223,8 @@ int live_files(const live_laws *live, const char **files, int max)
         files[count++] = stages[s];
     if (live_keeps_half_steps(live) && count < max)
         files[count++] = "stage/synchronise.cl";
+    if (live->servo && count < max)
+        files[count++] = "stage/servo.cl";
     if (live->law[SLOT_TEMPERATURE] && count < max)
         files[count++] = "stage/heat.cl";
     if (live->law[SLOT_WALL_HEAT] == &law_wall_flux && count < max)

@@ -9,6 +9,7 @@ typedef struct live_laws {
     const law *law[SLOT_COUNT];
     const double *option[SLOT_COUNT];
     bool frozen; /* nothing moves: heat advances by methods of its own */
+    bool servo; /* some wall keeps a force, in some stage */
 } live_laws;
 
 /* The union over all stages, which decides what is allocated. */

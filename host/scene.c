@@ -183,6 +183,43 @@ static void free_motion(motion_list *list)
     free(list->term);
 }
 
+const motion_list *scene_wall_motion(const scene *s, int wall)
+{
+    int group = s->wall[wall].group;
+    return group >= 0 ? &s->wall_group[group].motion : &s->wall[wall].motion;
+}
+
+bool scene_wall_moves(const scene *s, int wall)
+{
+    int group = s->wall[wall].group;
+    bool moves = scene_wall_motion(s, wall)->count > 0 || (group >= 0 ? s->wall_group[group].servo.given : s->wall[wall].servo.given);
+    for (int t = 0; t < s->stage_count; t++) {
+        const scene_stage *stage = &s->stage[t];
+        for (int k = 0; k < stage->wall_change_count; k++)
+            moves = moves || (stage->wall_change[k].wall == wall && (stage->wall_change[k].motion.count > 0 || stage->wall_change[k].servo.given));
+        for (int k = 0; k < stage->wall_group_change_count; k++)
+            moves = moves || (group >= 0 && stage->wall_group_change[k].group == group &&
+                              (stage->wall_group_change[k].motion.count > 0 || stage->wall_group_change[k].servo.given));
+    }
+    return moves;
+}
+
+bool scene_has_servo(const scene *s)
+{
+    bool any = false;
+    for (int w = 0; w < s->wall_count; w++)
+        any = any || s->wall[w].servo.given;
+    for (int g = 0; g < s->wall_group_count; g++)
+        any = any || s->wall_group[g].servo.given;
+    for (int t = 0; t < s->stage_count; t++) {
+        for (int k = 0; k < s->stage[t].wall_change_count; k++)
+            any = any || s->stage[t].wall_change[k].servo.given;
+        for (int k = 0; k < s->stage[t].wall_group_change_count; k++)
+            any = any || s->stage[t].wall_group_change[k].servo.given;
+    }
+    return any;
+}
+
 static void free_interactions(interaction *entry, int count)
 {
     for (int k = 0; k < count; k++) {
@@ -220,6 +257,9 @@ static void free_stage(scene_stage *stage)
         free(stage->wall_change[k].value);
     }
     free(stage->wall_change);
+    for (int k = 0; k < stage->wall_group_change_count; k++)
+        free_motion(&stage->wall_group_change[k].motion);
+    free(stage->wall_group_change);
     for (int k = 0; k < stage->group_change_count; k++)
         free_motion(&stage->group_change[k].motion);
     free(stage->group_change);
@@ -241,6 +281,11 @@ void scene_free(scene *s)
     }
     for (int k = 0; k < s->group_count; k++)
         free_group(&s->group[k]);
+    for (int k = 0; k < s->wall_group_count; k++) {
+        free(s->wall_group[k].name);
+        free_motion(&s->wall_group[k].motion);
+    }
+    free(s->wall_group);
     for (int k = 0; k < s->wall_count; k++) {
         free(s->wall[k].name);
         free_motion(&s->wall[k].motion);

@@ -155,8 +155,28 @@ typedef struct particle_group {
 
 typedef enum wall_shape { WALL_PLANE, WALL_BOX, WALL_RECTANGLE, WALL_DISC, WALL_CYLINDER, WALL_CONE } wall_shape;
 
+/* Keeps a force along a direction, or a pressure times an area; NAN where absent. */
+typedef struct servo_spec {
+    double direction[3], pressure_pa, force_n, area_m2, speed_max_m_s, travel_max_m;
+} servo_spec;
+
+typedef struct servo_choice {
+    bool given, off;
+    servo_spec spec;
+} servo_choice;
+
+/* Walls that move together. */
+typedef struct wall_group {
+    char *name;
+    motion_list motion;
+    servo_choice servo;
+    place at;
+} wall_group;
+
 typedef struct wall {
     char *name;
+    int group; /* -1: none */
+    servo_choice servo;
     wall_shape shape;
     double point_m[3], normal[3];      /* plane (the normal points to the side of the particles), disc uses center_m and normal */
     double low_m[3], high_m[3];        /* box */
@@ -176,9 +196,17 @@ typedef struct wall_change {
     int wall;
     bool motion_given;
     motion_list motion;
+    servo_choice servo;
     wall_heat heat;
     double *value; /* interaction properties between every material and this wall; NAN: unchanged */
 } wall_change;
+
+typedef struct wall_group_change {
+    int group;
+    bool motion_given;
+    motion_list motion;
+    servo_choice servo;
+} wall_group_change;
 
 typedef struct group_change {
     int group;
@@ -205,6 +233,8 @@ typedef struct scene_stage {
     double gravity_m_s2[3];
     int wall_change_count;
     wall_change *wall_change;
+    int wall_group_change_count;
+    wall_group_change *wall_group_change;
     int group_change_count;
     group_change *group_change;
     int interaction_count;
@@ -255,6 +285,8 @@ typedef struct scene {
     interaction *interaction;
     int group_count;
     particle_group *group;
+    int wall_group_count;
+    wall_group *wall_group;
     int wall_count;
     wall *wall;
     int stage_count;
@@ -281,6 +313,13 @@ double scene_interaction(const scene *scene, int stage, int material_a, int mate
 double scene_material(const scene *scene, int material, const property *property);
 /* True when the value above was written in the scene rather than taken from a fallback. */
 bool scene_interaction_given(const scene *scene, int stage, int material_a, int material_b, int wall, const property *property);
+
+/* Prescribed motion of a wall at the start: its own, or its group's. */
+const motion_list *scene_wall_motion(const scene *scene, int wall);
+/* True where the wall moves in some stage. */
+bool scene_wall_moves(const scene *scene, int wall);
+/* True where some wall keeps a force in some stage. */
+bool scene_has_servo(const scene *scene);
 
 /* The law that fills a slot in a stage, or NULL (none twin). */
 const effect *scene_effect(const scene *scene, int stage, slot_id slot);

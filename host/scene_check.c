@@ -342,6 +342,7 @@ status scene_check(reader *r)
 {
     TRY(check_body_names(r));
     TRY(check_other_names(r));
+    TRY(check_wall_groups(r));
     TRY(check_stages(r));
     TRY(check_particles(r));
     TRY(check_interactions(r));

@@ -174,6 +174,8 @@ static void write_page(FILE *page)
         write_law(page, *l);
     write_section(page, "`materials`", &material_section);
     write_section(page, "`walls`", &wall_section);
+    write_section(page, "`servo`", &servo_section);
+    write_section(page, "`wall_groups`", &wall_group_section);
     write_section(page, "`interactions`", &interaction_section);
     write_section(page, "`particles`", &group_section);
     write_section(page, "`items` of a list", &item_section);
@@ -185,6 +187,7 @@ static void write_page(FILE *page)
     write_section(page, "`heat` of a stage", &stage_heat_section);
     write_section(page, "`change`", &change_section);
     write_section(page, "`walls` of a change", &wall_change_section);
+    write_section(page, "`wall_groups` of a change", &wall_group_change_section);
     write_section(page, "`particles` of a change", &group_change_section);
     write_section(page, "`output`", &output_section);
     write_outputs(page, "Fields", output_fields);

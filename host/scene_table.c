@@ -211,6 +211,36 @@ const section motion_section = {.name = "motion term", .doc = "One term of a pre
                                 .selector = "type",
                                 .row = motion_rows, .finish = finish_motion};
 
+static const parameter servo_rows[] = {
+    {.key = "direction", .type = PARAMETER_DIRECTION, .required = true, AT(servo_spec, direction),
+     .doc = "direction in which the wall presses on the bed, and along which it moves"},
+    {.key = "pressure_pa", .type = PARAMETER_NUMBER, .unit = "Pa", POSITIVE, AT(servo_spec, pressure_pa),
+     .doc = "pressure to keep: the force is this times the area that faces the bed"},
+    {.key = "force_n", .type = PARAMETER_NUMBER, .unit = "N", POSITIVE, AT(servo_spec, force_n), .doc = "force to keep, instead of a pressure"},
+    {.key = "area_m2", .type = PARAMETER_NUMBER, .unit = "m^2", POSITIVE, AT(servo_spec, area_m2),
+     .shown = "of rectangles, discs and boxes as seen along the direction; of a plane the cross-section of the one box or cylinder around the "
+              "bed, else of the domain",
+     .doc = "area that faces the bed"},
+    {.key = "speed_max_m_s", .type = PARAMETER_NUMBER, .unit = "m/s", .required = true, POSITIVE, AT(servo_spec, speed_max_m_s),
+     .doc = "speed at which the wall runs while it meets nothing, and never faster; the smaller, the gentler"},
+    {.key = "travel_max_m", .type = PARAMETER_NUMBER, .unit = "m", POSITIVE, AT(servo_spec, travel_max_m),
+     .shown = "to the far end of the bed as generated", .doc = "way, in either sense, after which a guard stops the run"},
+    {0},
+};
+const section servo_section = {.name = "servo", .doc = "A wall, or a group of walls, that moves to keep a force (see the theory page).",
+                               .row = servo_rows, .finish = finish_servo};
+
+static const parameter wall_group_rows[] = {
+    {.key = "name", .type = PARAMETER_NAME, .required = true, AT(wall_group, name), .doc = "name of the group"},
+    {.key = "motion", .type = PARAMETER_OTHER, .read = read_motion, .shown = "[]", AT(wall_group, motion), .form = "list of motion terms",
+     .doc = "prescribed motion of all its walls"},
+    {.key = "servo", .type = PARAMETER_SECTION, .section = &servo_section, AT(wall_group, servo.spec), .given = offsetof(wall_group, servo.given),
+     .doc = "keeps the sum of the forces on its walls, or a pressure times the sum of their areas"},
+    {0},
+};
+const section wall_group_section = {.name = "wall group", .doc = "Walls that move together, as one body.", .row = wall_group_rows,
+                                    .placed = true, .at = offsetof(wall_group, at)};
+
 static const parameter wall_rows[] = {
     {.key = "name", .type = PARAMETER_NAME, .required = true, AT(wall, name),
      .doc = "name of the wall, used like a material's in `between`"},
@@ -250,7 +280,10 @@ static const parameter wall_rows[] = {
      .form = "number, or table in time", .shown = "none", .doc = "prescribed temperature"},
     {.key = "heat_flux_w", .type = PARAMETER_NUMBER, .unit = "W", AT(wall, heat.flux_w), .shown = "none",
      .doc = "heat into the particles that touch the wall, shared among them by area of contact; none flows while none touches"},
-    {.key = "servo", .type = PARAMETER_LATER, .doc = "a wall that moves to keep a force"},
+    {.key = "servo", .type = PARAMETER_SECTION, .section = &servo_section, AT(wall, servo.spec), .given = offsetof(wall, servo.given),
+     .doc = "lets the wall move so that it keeps a force or a pressure, beside its prescribed motion"},
+    {.key = "group", .type = PARAMETER_OTHER, .read = read_wall_group, AT(wall, group), .form = "name of a wall group",
+     .doc = "moves with the walls of this group; motion and servo are then the group's"},
     {0},
 };
 const section wall_section = {.name = "wall", .doc = "Rigid walls. They have no material: interactions name the wall.", .selector = "shape",
@@ -277,6 +310,8 @@ static const parameter wall_change_rows[] = {
      .doc = "the wall that changes"},
     {.key = "motion", .type = PARAMETER_OTHER, .read = read_motion, AT(wall_change, motion), .given = offsetof(wall_change, motion_given),
      .shown = "unchanged", .form = "list of motion terms", .doc = "its motion from now on; `[]` stops it"},
+    {.key = "servo", .type = PARAMETER_OTHER, .read = read_changed_servo, AT(wall_change, servo), .shown = "unchanged", .form = "servo, or `off`",
+     .doc = "its servo from now on; `off` lets it stand where it is"},
     {.key = "heat", .type = PARAMETER_CHOICE, .choices = "adiabatic", .shown = "unchanged", AT(wall_change, heat.word),
      .given = offsetof(wall_change, heat.adiabatic), .doc = "no heat passes"},
     {.key = "temperature_k", .type = PARAMETER_OTHER, .read = read_number_in_time, .unit = "K", POSITIVE, AT(wall_change, heat.temperature_k),
@@ -288,6 +323,17 @@ static const parameter wall_change_rows[] = {
 const section wall_change_section = {.name = "wall change",
                                      .doc = "Interaction properties given here hold between this wall and every material.",
                                      .row = wall_change_rows, .properties = interaction_properties, .values = offsetof(wall_change, value)};
+
+static const parameter wall_group_change_rows[] = {
+    {.key = "name", .type = PARAMETER_OTHER, .read = read_wall_group, .required = true, AT(wall_group_change, group),
+     .form = "name of a wall group", .doc = "the group that changes"},
+    {.key = "motion", .type = PARAMETER_OTHER, .read = read_motion, AT(wall_group_change, motion), .given = offsetof(wall_group_change, motion_given),
+     .shown = "unchanged", .form = "list of motion terms", .doc = "its motion from now on; `[]` stops it"},
+    {.key = "servo", .type = PARAMETER_OTHER, .read = read_changed_servo, AT(wall_group_change, servo), .shown = "unchanged",
+     .form = "servo, or `off`", .doc = "its servo from now on; `off` lets it stand where it is"},
+    {0},
+};
+const section wall_group_change_section = {.name = "wall group change", .doc = "A change of a wall group's motion.", .row = wall_group_change_rows};
 
 static const parameter group_change_rows[] = {
     {.key = "name", .type = PARAMETER_OTHER, .read = read_group, .required = true, AT(group_change, group),
@@ -304,6 +350,8 @@ static const parameter change_rows[] = {
      .given = offsetof(scene_stage, gravity_given), .doc = "gravity"},
     {.key = "walls", .type = PARAMETER_LIST, .section = &wall_change_section, .size = sizeof(wall_change), AT(scene_stage, wall_change),
      .count = offsetof(scene_stage, wall_change_count), .doc = "walls whose motion or interactions change"},
+    {.key = "wall_groups", .type = PARAMETER_LIST, .section = &wall_group_change_section, .size = sizeof(wall_group_change),
+     AT(scene_stage, wall_group_change), .count = offsetof(scene_stage, wall_group_change_count), .doc = "wall groups whose motion changes"},
     {.key = "particles", .type = PARAMETER_LIST, .section = &group_change_section,
      .size = sizeof(group_change), AT(scene_stage, group_change),
      .count = offsetof(scene_stage, group_change_count), .doc = "particle groups whose motion changes"},
@@ -412,6 +460,8 @@ static const parameter scene_rows[] = {
      .doc = "the live laws"},
     {.key = "materials", .type = PARAMETER_LIST, .section = &material_section, .size = sizeof(material), .required = true,
      AT(scene, material), .count = offsetof(scene, material_count), .doc = "what the particles are made of"},
+    {.key = "wall_groups", .type = PARAMETER_LIST, .section = &wall_group_section, .size = sizeof(wall_group), AT(scene, wall_group),
+     .count = offsetof(scene, wall_group_count), .shown = "[]", .doc = "groups of walls that move together"},
     {.key = "walls", .type = PARAMETER_LIST, .section = &wall_section, .size = sizeof(wall), AT(scene, wall),
      .count = offsetof(scene, wall_count), .shown = "[]", .doc = "rigid walls"},
     {.key = "interactions", .type = PARAMETER_LIST, .section = &interaction_section, .size = sizeof(interaction), AT(scene, interaction),

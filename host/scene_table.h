@@ -4,7 +4,8 @@
 #include "parameter.h"
 
 extern const section scene_section, domain_section, effect_section, material_section, interaction_section, group_section, region_section,
-    item_section, radius_section, wall_section, motion_section, stage_section, until_section, change_section, wall_change_section,
+    item_section, radius_section, wall_section, servo_section, wall_group_section,
+    wall_group_change_section, motion_section, stage_section, until_section, change_section, wall_change_section,
     group_change_section, output_section, table_section, guard_section, study_section, environment_section, gas_section, quantity_section,
     stage_heat_section, path_section;
 /* Keys of every source besides its law's options; ends with a NULL key. */
@@ -42,13 +43,18 @@ status read_group_temperature(reader *r, const parameter *row, int node, void *t
 status read_number_in_time(reader *r, const parameter *row, int node, void *target);
 status read_number_anywhere(reader *r, const parameter *row, int node, void *target);
 status read_vector_anywhere(reader *r, const parameter *row, int node, void *target);
+status read_wall_group(reader *r, const parameter *row, int node, void *target);
+status read_changed_servo(reader *r, const parameter *row, int node, void *target);
 status read_table_velocity(reader *r, const parameter *row, int node, void *target);
 
 /* Checks over several keys of one section. */
 status finish_domain(reader *r, int node, void *target);
 status finish_region(reader *r, int node, void *target);
 status finish_radius(reader *r, int node, void *target);
+status check_wall_group(reader *r, int node, wall *wall);
+status check_wall_groups(reader *r);
 status finish_wall(reader *r, int node, void *target);
+status finish_servo(reader *r, int node, void *target);
 status finish_motion(reader *r, int node, void *target);
 status finish_interaction(reader *r, int node, void *target);
 status finish_until(reader *r, int node, void *target);

@@ -47,6 +47,12 @@ static status read_reference(reader *r, const parameter *row, int node, const ch
     return unknown_name(r, node, kind, word, known);
 }
 
+status read_wall_group(reader *r, const parameter *row, int node, void *target)
+{
+    return read_reference(r, row, node, "wall group", r->scene->wall_group, r->scene->wall_group_count, sizeof(wall_group),
+                          offsetof(wall_group, name), (int *)((char *)target + row->offset));
+}
+
 status read_material(reader *r, const parameter *row, int node, void *target)
 {
     return read_reference(r, row, node, "material", r->scene->material, r->scene->material_count, sizeof(material),
@@ -427,6 +433,7 @@ status finish_wall(reader *r, int node, void *target)
     wall *w = target;
     bool planar = r->scene->dimensions == 2;
     TRY(check_wall_heat(r, node, &w->heat));
+    TRY(check_wall_group(r, node, w));
     if (w->shape == WALL_RECTANGLE)
         return check_rectangle(r, node, w);
     if (w->shape == WALL_CYLINDER)

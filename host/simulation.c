@@ -144,7 +144,7 @@ static status create_bodies(simulation *sim, failure *why)
     if (!sim->wall_body || !sim->group_body)
         return fail(why, STATUS_ERROR, "out of memory");
     for (int w = 0; w < scene->wall_count; w++) {
-        moving_body_init(&sim->wall_body[w], &scene->wall[w].motion);
+        moving_body_init(&sim->wall_body[w], scene_wall_motion(scene, w));
         sim->face_count += wall_face_count(&scene->wall[w]);
     }
     for (int g = 0; g < scene->group_count; g++) {
@@ -152,7 +152,7 @@ static status create_bodies(simulation *sim, failure *why)
         sim->group_held[g] = scene->group[g].fixed || scene->group[g].motion.count > 0;
     }
     sim->mover_count = sim->all.law[SLOT_MOTION] ? scene->group_count : 0;
-    return STATUS_OK;
+    return servo_create(sim, why);
 }
 
 static uint64_t widest_field(const simulation *sim)
@@ -230,6 +230,7 @@ void simulation_free(simulation *sim)
         clFinish(sim->device->queue);
     launch_close(sim);
     table_free(sim);
+    servo_free(sim);
     heat_free(sim);
     frozen_free(sim);
     for (int f = 0; f < sim->field_count; f++)
@@ -314,14 +315,17 @@ static status write_rows(simulation *sim, int rows, failure *why)
         clast_face *face = sim->face_rows + row * sim->face_count;
         for (int w = 0; w < sim->scene->wall_count; w++) {
             body_pose pose = moving_body_pose(&sim->wall_body[w], time);
+            servo_shift(sim, w, false, &pose);
             wall_faces(&sim->scene->wall[w], &pose, sim->scene->material_count + w, w, face);
-            face += wall_face_count(&sim->scene->wall[w]);
+            for (int f = 0; f < wall_face_count(&sim->scene->wall[w]); f++)
+                face++->drive = servo_of_wall(sim, w);
         }
         for (int g = 0; g < sim->mover_count; g++)
             sim->mover_rows[row * sim->mover_count + g] = moving_body_step(&sim->group_body[g], time, sim->dt);
         heat_fill_row(sim, row, time);
     }
     TRY(send_rows(sim, rows, why));
+    TRY(servo_begin(sim, why));
     return heat_write_rows(sim, rows, why);
 }
 
@@ -329,6 +333,13 @@ status simulation_pose_now(simulation *sim, failure *why)
 {
     TRY(fit_rows(sim, why));
     return write_rows(sim, 1, why);
+}
+
+body_pose simulation_wall_pose(const simulation *sim, int wall)
+{
+    body_pose pose = moving_body_pose(&sim->wall_body[wall], sim->time);
+    servo_shift(sim, wall, true, &pose);
+    return pose;
 }
 
 /* A cylinder, a cone or a disc is where its axis is: to turn about that moves nothing. False: not such a wall. */
@@ -442,6 +453,11 @@ static void change_bodies(simulation *sim, const scene_stage *stage)
     for (int c = 0; c < stage->wall_change_count; c++)
         if (stage->wall_change[c].motion_given)
             moving_body_change(&sim->wall_body[stage->wall_change[c].wall], &stage->wall_change[c].motion, sim->time);
+    for (int c = 0; c < stage->wall_group_change_count; c++)
+        for (int w = 0; stage->wall_group_change[c].motion_given && w < sim->scene->wall_count; w++)
+            if (sim->scene->wall[w].group == stage->wall_group_change[c].group)
+                moving_body_change(&sim->wall_body[w], &stage->wall_group_change[c].motion, sim->time);
+    servo_change(sim, stage, false);
     for (int c = 0; c < stage->group_change_count; c++) {
         const group_change *change = &stage->group_change[c];
         moving_body_change(&sim->group_body[change->group], &change->motion, sim->time);
@@ -451,7 +467,8 @@ static void change_bodies(simulation *sim, const scene_stage *stage)
 
 static void note_movers(simulation *sim)
 {
-    sim->walls_move = sim->groups_move = false;
+    sim->groups_move = false;
+    sim->walls_move = servo_live(sim);
     for (int w = 0; w < sim->scene->wall_count; w++)
         sim->walls_move = sim->walls_move || moving_body_moves(&sim->wall_body[w]);
     for (int g = 0; g < sim->mover_count; g++)
@@ -497,6 +514,7 @@ status simulation_enter_stage(simulation *sim, int stage, failure *why)
         TRY(launch_open(sim, why));
     }
     TRY(forget_histories(sim, why));
+    TRY(servo_enter(sim, why));
     note_movers(sim);
     TRY(upload_constants(sim, stage, why));
     TRY(heat_upload_constants(sim, stage, why));
@@ -644,6 +662,7 @@ static status enqueue_batch(simulation *sim, int steps, failure *why)
         TRY(launch_pass(particle, "particle_stage", &launch, why));
         TRY(launch_run(sim, pair, "pair_stage", sim->table.record_count, CLAST_BLOCK, why));
         TRY(launch_run(sim, particle, "particle_stage", sim->count, CLAST_BLOCK, why));
+        TRY(servo_step(sim, &launch, steps, why));
     }
     return STATUS_OK;
 }
@@ -654,7 +673,7 @@ static int steps_before_walls(const simulation *sim, int steps)
     if (!sim->walls_move)
         return steps;
     for (int s = 0; s < steps; s++)
-        if (wall_travel(sim, sim->time + (double)s * sim->dt) > 0.5 * sim->table.skin)
+        if (wall_travel(sim, sim->time + (double)s * sim->dt) > servo_share(sim) * sim->table.skin)
             return s;
     return steps;
 }
@@ -670,6 +689,7 @@ static status run_batch(simulation *sim, int steps, int *done, bool *rebuild, fa
     TRY(store_write(sim, sim->control, 0, sizeof control, &control, why));
     TRY(enqueue_batch(sim, steps, why));
     TRY(store_read(sim, sim->control, 0, sizeof control, &control, why));
+    TRY(servo_end(sim, why));
     *done = control.halt_step < steps ? control.halt_step : steps;
     sim->bonding_done = sim->bonding_done || (bonding >= 0 && bonding < *done);
     *rebuild = control.reason != 0;

@@ -8,6 +8,7 @@
 #include "live.h"
 #include "pose.h"
 #include "scene.h"
+#include "servo.h"
 
 #include <clast/shared.h>
 
@@ -124,6 +125,7 @@ typedef struct simulation {
 
     int face_count, mover_count;
     moving_body *wall_body, *group_body;
+    drives drives;
     bool walls_move, groups_move;
     clast_face *face_rows;   /* host rows of a batch */
     clast_mover *mover_rows;
@@ -172,6 +174,8 @@ status simulation_advance(simulation *sim, int64_t steps, failure *why);
 status simulation_count_leavers(simulation *sim, int64_t kept, failure *why);
 /* Displacements are measured against this velocity until the next table. */
 status simulation_choose_drift(simulation *sim, failure *why);
+/* A wall as it stands now, with what its servo has moved it. */
+body_pose simulation_wall_pose(const simulation *sim, int wall);
 /* Faces and movers for the step that starts at the present time, as row 0. */
 status simulation_pose_now(simulation *sim, failure *why);
 

@@ -140,6 +140,7 @@ status state_save(simulation *sim, bundle *out, failure *why)
         bundle_add_f64(out, "run/delivered", sim->beams.delivered);
     save_bodies(sim->wall_body, sim->scene->wall_count, "bodies/walls", out);
     save_bodies(sim->group_body, sim->scene->group_count, "bodies/groups", out);
+    servo_save(sim, out);
     int32_t *held = bundle_add(out, "bodies/held", BUNDLE_I32, sim->scene->group_count, 1, NULL);
     for (int g = 0; g < sim->scene->group_count; g++)
         held[g] = sim->group_held[g];
@@ -232,6 +233,10 @@ static void replay_motions(simulation *sim, int stage)
         for (int c = 0; c < now->wall_change_count; c++)
             if (now->wall_change[c].motion_given)
                 sim->wall_body[now->wall_change[c].wall].motion = &now->wall_change[c].motion;
+        for (int c = 0; c < now->wall_group_change_count; c++)
+            for (int w = 0; now->wall_group_change[c].motion_given && w < sim->scene->wall_count; w++)
+                if (sim->scene->wall[w].group == now->wall_group_change[c].group)
+                    sim->wall_body[w].motion = &now->wall_group_change[c].motion;
         for (int c = 0; c < now->group_change_count; c++)
             sim->group_body[now->group_change[c].group].motion = &now->group_change[c].motion;
     }
@@ -399,6 +404,7 @@ status state_load(simulation *sim, const bundle *in, const char *path, failure *
         if (sim->field[f].field->extent == PER_PARTICLE && sim->field[f].field->role == FIELD_STATE)
             TRY(load_field(sim, &sim->field[f], in, path, present->data, why));
     replay_motions(sim, (int)stage);
+    TRY(servo_load(sim, in, path, (int)stage, why));
     int64_t made = sim->bonds_gone; /* of all, with those of the records to come */
     double skin = sim->table.skin;
     TRY(skin_of_histories(sim, in, path, &sim->table.skin, why));

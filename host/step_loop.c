@@ -22,11 +22,11 @@ static int loop_records(const simulation *sim)
 }
 
 /* A grain has at least a record in any bed that is not dilute. Where walls give a heat flow, their areas are summed in a launch of its own
- * between the two stages. */
+ * between the two stages; where they keep a force, a launch of its own behind them moves them. */
 bool step_loop_wanted(const simulation *sim)
 {
     step_form form = sim->scene->table.step_form;
-    if (sim->live.law[SLOT_WALL_HEAT] == &law_wall_flux)
+    if (sim->live.law[SLOT_WALL_HEAT] == &law_wall_flux || sim->live.servo)
         return false;
     return form == STEP_ONE_GROUP || (form == STEP_AUTO && sim->id_count <= loop_records(sim));
 }

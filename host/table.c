@@ -384,6 +384,7 @@ static status finish(simulation *sim, failure *why)
     sim->particles_stale = true;
     sim->built_time = sim->time;
     sim->rebuild_step = sim->step;
+    servo_note_table(sim);
     t->skin_look = FIRST_SKIN_LOOK;
     TRY(store_copy(sim, store_find(sim, "position")->mem, sim->built_position, 0, 0, field_bytes(sim, &field_position), why));
     TRY(simulation_choose_drift(sim, why));

@@ -82,8 +82,24 @@ typedef struct clast_face {
     clast_i32 shape;
     clast_i32 party;       /* index of the named wall among materials and walls */
     clast_i32 wall;
-    clast_i32 spare;
+    clast_i32 drive;       /* index of the servo that moves it beside its prescribed motion, or -1 */
 } clast_face;
+
+/* A wall, or a group of walls, that keeps a force: it has moved `shift` along `direction`. */
+typedef struct clast_servo {
+    clast_f64 direction[3];
+    clast_f64 target;        /* force, N */
+    clast_f64 mass, damping; /* kg, N s/m */
+    clast_f64 speed_max;
+    clast_f64 unit, inverse_unit; /* forces are summed in whole numbers of this, N */
+    clast_f64 shift, velocity;
+    clast_f64 built;         /* shift when the table was built */
+    clast_f64 travel_max;    /* way since then that asks for a new table */
+    clast_f64 force;         /* with which the bed pushed back in the last step */
+    clast_f64 fastest;       /* speed since it last turned round */
+    clast_i32 reversals;     /* turns from more than half of the largest speed */
+    clast_i32 live;
+} clast_servo;
 
 /* A prescribed motion over one step: x -> pivot + R (x - pivot) + shift; at its end the velocity is velocity + spin x (x - pivot_end). */
 typedef struct clast_mover {

@@ -128,6 +128,7 @@ static live_laws all_at_once(bool second)
         if (!live.law[every_law[n]->slot] || second)
             live.law[every_law[n]->slot] = every_law[n];
     complete(&live);
+    live.servo = true;
     return live;
 }
 
@@ -286,6 +287,7 @@ static void test_no_file_forgotten(void **state)
         for (size_t n = 0; n <= LAWS + 1 && !found; n++) {
             const char *files[64];
             live_laws live = n <= LAWS ? with(n < LAWS ? every_law[n] : NULL, NULL) : all_at_once(true);
+            live.servo = true;
             int count = files_of(&live, files);
             for (int k = 0; k < count; k++)
                 found = found || strcmp(files[k], f->name) == 0;
@@ -455,7 +457,16 @@ static const shared_place places[] = {
     PLACE(clast_face, shape),
     PLACE(clast_face, party),
     PLACE(clast_face, wall),
-    PLACE(clast_face, spare),
+    PLACE(clast_face, drive),
+    SIZE(clast_servo),
+    PLACE(clast_servo, target),
+    PLACE(clast_servo, speed_max),
+    PLACE(clast_servo, inverse_unit),
+    PLACE(clast_servo, shift),
+    PLACE(clast_servo, travel_max),
+    PLACE(clast_servo, fastest),
+    PLACE(clast_servo, reversals),
+    PLACE(clast_servo, live),
     SIZE(clast_mover),
     PLACE(clast_mover, shift),
     PLACE(clast_mover, pivot),
