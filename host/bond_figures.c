@@ -238,8 +238,24 @@ static status check_class(const contact_class *class, const size_range *size, fa
     return STATUS_OK;
 }
 
+/* Cohesion by JKR's contact radius is made for Hertz's spring, and a bond would have to share the normal force with it. */
+static status check_cohesion(const scene *s, failure *why)
+{
+    const effect *cohesion = scene_effect(s, -1, SLOT_COHESION), *normal = scene_effect(s, -1, SLOT_NORMAL);
+    if (!cohesion)
+        return STATUS_OK;
+    if (scene_effect(s, -1, SLOT_BOND))
+        return fail(why, STATUS_BAD_INPUT, "%s:%d:%d: effects[cohesion]: a scene has bonds or cohesion, not both: each takes the normal force over; keep one",
+                    s->path, cohesion->at.line, cohesion->at.column);
+    if (cohesion->law != &law_dmt && normal && normal->law != &law_hertz)
+        return fail(why, STATUS_BAD_INPUT, "%s:%d:%d: effects[cohesion]: `%s` needs the normal law `hertz`; the scene has `%s`", s->path,
+                    cohesion->at.line, cohesion->at.column, cohesion->law->name, normal->law->name);
+    return STATUS_OK;
+}
+
 status bond_check(const scene *scene, const bed *bed, failure *why)
 {
+    TRY(check_cohesion(scene, why));
     size_range *size = sizes_of(scene, bed);
     status result = size ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
     for (int s = 0; s < scene->stage_count; s++)

@@ -6,7 +6,8 @@
 #include <string.h>
 
 const law *const laws[] = {&law_hertz,        &law_linear,        &law_mindlin, &law_coulomb_linear, &law_elastic_plastic,
-                           &law_constant_torque, &law_power, &law_adhesion, &law_parallel, &law_local_damping, &law_viscous_damping, &law_overlap_area,
+                           &law_constant_torque, &law_power, &law_adhesion, &law_parallel, &law_jkr, &law_dmt, &law_sjkr,
+                           &law_local_damping, &law_viscous_damping, &law_overlap_area,
                            &law_batchelor_obrien, &law_pipe_network, &law_newton,
                            &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, &law_laser, &law_burner, &law_exponential_softening, NULL};
 
@@ -16,7 +17,7 @@ static const struct {
 } slots[SLOT_COUNT] = {
     [SLOT_PRECISION] = {"precision", false},     [SLOT_COMPOSITION] = {"composition", false}, [SLOT_PERIODIC] = {"periodic", false},     [SLOT_MOTION] = {"motion", false},
     [SLOT_ROTATION] = {"rotation", false},       [SLOT_NORMAL] = {"normal", true},
-    [SLOT_BONDING] = {"bonding", false},         [SLOT_BOND] = {"bond", true},              [SLOT_COHESION] = {"cohesion", false},
+    [SLOT_BONDING] = {"bonding", false},         [SLOT_BOND] = {"bond", true},              [SLOT_COHESION] = {"cohesion", true},
     [SLOT_SLIP] = {"slip", false},
     [SLOT_TANGENTIAL] = {"tangential", true},    [SLOT_ROLLING] = {"rolling", true},        [SLOT_MODULUS] = {"modulus", true},          [SLOT_SOFTENING] = {"softening", false},
     [SLOT_DISSIPATION] = {"dissipation", false},
@@ -74,7 +75,7 @@ const property *const *interaction_properties(void)
                                           &property_bond_equilibrium_strain, &property_bond_exponent, &property_bond_damping,
                                           &property_bond_threshold, &property_bond_tensile_strength, &property_bond_shear_strength,
                                           &property_bond_youngs_modulus, &property_bond_shear_modulus, &property_bond_radius_ratio,
-                                          &property_bond_gap_ratio,
+                                          &property_bond_gap_ratio, &property_work_of_adhesion,
                                           NULL};
     return all;
 }

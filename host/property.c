@@ -65,6 +65,8 @@ const property property_bond_shear_modulus = {"bond_shear_modulus_pa", 0, 1e15, 
 const property property_bond_radius_ratio = {"bond_radius_ratio", 0, 1, true, 1, NULL, "radius of the bond, of the smaller grain's"};
 const property property_bond_gap_ratio = {"bond_gap_ratio", 0, 1, false, 1e-6, NULL,
                                           "gap up to which a bond is made, of the smaller grain's radius"};
+const property property_work_of_adhesion = {"work_of_adhesion_j_m2", 0, 1e6, false, NAN, NULL,
+                                            "work of adhesion of two surfaces; 0: this pair does not cohere"};
 const property property_bond_shear_strength = {"bond_shear_strength_pa", 0, 1e29, true, 1e30, NULL,
                                                "shear stress at which a bond breaks; default: it does not"};
 

@@ -220,6 +220,7 @@ static void derive_parallel(const contact_class *class, const double *option, do
     parameter[4] = interaction_value(class, &property_bond_tensile_strength);
     parameter[5] = interaction_value(class, &property_bond_shear_strength);
     parameter[6] = interaction_value(class, &property_bond_gap_ratio);
+    parameter[7] = young > 0.0 ? sqrt(parameter[1] / young) : 0.0;
 }
 
 static double parallel_reach(const contact_class *class, double radius)
@@ -237,7 +238,7 @@ const law law_parallel = {
     .options = {BOND_OPTIONS},
     .pair_fields = {&field_bonded, &field_bond_gap, &field_bond_shear, &field_bond_turn},
     .parameters = {"PARALLEL_YOUNG", "PARALLEL_SHEAR", "PARALLEL_RADIUS", "PARALLEL_DAMPING", "PARALLEL_TENSILE", "PARALLEL_SHEAR_STRENGTH",
-                   "PARALLEL_GAP"},
+                   "PARALLEL_GAP", "PARALLEL_ROOT"},
     .derive = derive_parallel,
     .reach = parallel_reach,
     .keeps_bonds = true,

@@ -7,7 +7,7 @@
  * A bond is made when the criterion is met and the surfaces are no further apart than a share of the smaller radius; it may be stretched to any
  * length that its strength allows, at a wall to the radius.
  * Reads PARALLEL_YOUNG = E, PARALLEL_SHEAR = G, PARALLEL_RADIUS = lambda, PARALLEL_DAMPING = 2 xi, PARALLEL_TENSILE, PARALLEL_SHEAR_STRENGTH,
- * PARALLEL_GAP; history: bonded (as for adhesion), bond_gap, bond_shear, bond_turn. Writes forces and moments. */
+ * PARALLEL_GAP, PARALLEL_ROOT = sqrt(G/E); history: bonded (as for adhesion), bond_gap, bond_shear, bond_turn. Writes forces and moments. */
 #ifndef PARALLEL_YOUNG
 #define PARALLEL_YOUNG 0
 #define PARALLEL_SHEAR 1
@@ -16,6 +16,7 @@
 #define PARALLEL_TENSILE 4
 #define PARALLEL_SHEAR_STRENGTH 5
 #define PARALLEL_GAP 6
+#define PARALLEL_ROOT 7
 #endif
 #define BOND_PAIR_FIELDS(READ, WRITE) WRITE(real, bonded) WRITE(real, bond_gap) WRITE(real, bond_shear) WRITE(real, bond_turn)
 #define BOND_LOAD(launch, k, s)                                          \
@@ -42,8 +43,7 @@ typedef struct bond_state {
 typedef struct parallel_beam {
     real stretch, shear, bend, twist; /* stiffnesses: N/m, N/m, N m, N m */
     real radius, area, inertia;       /* b, pi b^2, pi b^4/4 */
-    real mass;                        /* m*, and j* of the relative turn */
-    real spin_inertia;
+    real move_damping, bend_damping;  /* 2 xi sqrt(k m*) of the stretch, 2 xi sqrt(k j*) of the bending: the others are constants times these */
 } parallel_beam;
 
 /* 1 for an odd count. */
@@ -77,9 +77,10 @@ INLINE parallel_beam parallel_of(const contact *c, real rest)
     p.shear = shear * p.area;
     p.bend = young * p.inertia;
     p.twist = R(2.0) * shear * p.inertia;
-    p.mass = c->mass_eff;
     real ii = R(0.4) * c->mass_i * c->radius_i * c->radius_i, jj = R(0.4) * c->mass_j * c->radius_j * c->radius_j;
-    p.spin_inertia = ii / (R(1.0) + ii / jj);
+    /* roots of products alike are packed into vectors, which ends that over pairs: one root of a product, one of a ratio */
+    p.move_damping = c->value[PARALLEL_DAMPING] * sqrt(p.stretch * c->mass_eff);
+    p.bend_damping = R(0.5) * p.radius * p.move_damping * sqrt(ii / ((R(1.0) + ii / jj) * c->mass_eff));
     return p;
 }
 
@@ -110,7 +111,7 @@ INLINE void bond_normal(const contact *c, bond_state *s, response *out)
     s->count = made ? s->count + R(1.0) : (apart && s->count < R(0.0) ? -s->count : s->count);
     bool lives = lived || made;
     parallel_beam p = parallel_of(c, lives ? s->gap : R(0.0));
-    real spring = p.stretch * (s->gap - c->gap), damper = c->value[PARALLEL_DAMPING] * sqrt(p.stretch * p.mass) * c->approach;
+    real spring = p.stretch * (s->gap - c->gap), damper = p.move_damping * c->approach;
     out->normal += lives ? spring + damper : R(0.0);
 }
 
@@ -123,7 +124,7 @@ INLINE vec3 bond_turned(const contact *c, vec3 v)
 INLINE void bond_shear(const contact *c, bond_state *s, response *out)
 {
     bool lives = bond_lives(s->count) > R(0.5);
-    real keep = lives ? R(1.0) : R(0.0), xi = c->value[PARALLEL_DAMPING];
+    real keep = lives ? R(1.0) : R(0.0), root = c->value[PARALLEL_ROOT];
     parallel_beam p = parallel_of(c, lives ? s->gap : R(0.0));
     vec3 spring = bond_turned(c, s->shear), turn = bond_turned(c, s->turn), rate = sub(c->spin_i, c->spin_j);
     spring = add_scaled(add_scaled(spring, -dot3(spring, c->n), c->n), c->elapsed, c->past_slip);
@@ -132,13 +133,16 @@ INLINE void bond_shear(const contact *c, bond_state *s, response *out)
     vec3 bend = add_scaled(turn, -along, c->n), rate_across = add_scaled(rate, -rate_along, c->n);
     vec3 force = scale(-p.shear, spring), moment = scale(-p.bend, bend);
     real torsion = -p.twist * along, tension = p.stretch * (c->gap - s->gap);
-    real tensile = tension / p.area + sqrt(dot3(moment, moment)) * p.radius / p.inertia;
-    real shear = sqrt(dot3(force, force)) / p.area + fabs(torsion) * p.radius / (R(2.0) * p.inertia);
+    /* |B| b/I against what tension leaves of the strength, |S|/A against what torsion does: squared */
+    real tensile = (c->value[PARALLEL_TENSILE] - tension / p.area) * p.inertia / p.radius;
+    real shear = (c->value[PARALLEL_SHEAR_STRENGTH] - fabs(torsion) * p.radius / (R(2.0) * p.inertia)) * p.area;
+    bool bent = tensile < R(0.0) || dot3(moment, moment) > tensile * tensile;
+    bool sheared = shear < R(0.0) || dot3(force, force) > shear * shear;
     bool gone = parallel_at_wall(c) && c->gap > c->radius_i; /* further the table does not look for walls */
-    bool torn = lives && (gone || tensile > c->value[PARALLEL_TENSILE] || shear > c->value[PARALLEL_SHEAR_STRENGTH]);
-    force = add_scaled(force, -xi * sqrt(p.shear * p.mass), c->slip);
-    moment = add_scaled(moment, -xi * sqrt(p.bend * p.spin_inertia), rate_across);
-    moment = add_scaled(moment, torsion - xi * sqrt(p.twist * p.spin_inertia) * rate_along, c->n);
+    bool torn = lives && (gone || bent || sheared);
+    force = add_scaled(force, -root * p.move_damping, c->slip);
+    moment = add_scaled(moment, -p.bend_damping, rate_across);
+    moment = add_scaled(moment, torsion - R(1.41421356237309505) * root * p.bend_damping * rate_along, c->n);
     out->tangential = add_scaled(out->tangential, keep, force);
     out->rolling = add_scaled(out->rolling, keep, moment);
     real stays = lives && !torn ? R(1.0) : R(0.0);
@@ -162,13 +166,14 @@ INLINE void bond_modes(const contact *c, const bond_state *s, mode *normal, mode
 {
     bool lives = bond_lives(s->count) > R(0.5);
     parallel_beam p = parallel_of(c, lives ? s->gap : R(0.0));
-    real xi = c->value[PARALLEL_DAMPING], keep = lives ? R(1.0) : R(0.0), turn = p.bend > p.twist ? p.bend : p.twist;
+    real root = c->value[PARALLEL_ROOT], keep = lives ? R(1.0) : R(0.0), turn = p.bend > p.twist ? p.bend : p.twist;
+    real twist_root = R(1.41421356237309505) * root;
     normal->stiffness += keep * p.stretch;
-    normal->damping += keep * xi * sqrt(p.stretch * p.mass);
+    normal->damping += keep * p.move_damping;
     tangential->stiffness += keep * p.shear;
-    tangential->damping += keep * xi * sqrt(p.shear * p.mass);
+    tangential->damping += keep * root * p.move_damping;
     rolling->stiffness += keep * turn;
-    rolling->damping += keep * xi * sqrt(turn * p.spin_inertia);
+    rolling->damping += keep * (twist_root > R(1.0) ? twist_root : R(1.0)) * p.bend_damping;
 }
 
 /* A pair that cannot bond keeps the modes of its contact. */
