@@ -112,6 +112,8 @@ INLINE void bond_normal(const contact *c, bond_state *s, response *out)
     bool lives = lived || made;
     parallel_beam p = parallel_of(c, lives ? s->gap : R(0.0));
     real spring = p.stretch * (s->gap - c->gap), damper = p.move_damping * c->approach;
+    out->spring += lives ? spring : R(0.0);
+    out->damper += lives ? damper : R(0.0);
     out->normal += lives ? spring + damper : R(0.0);
 }
 

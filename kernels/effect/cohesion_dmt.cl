@@ -19,6 +19,7 @@ INLINE real cohesion_pull(const contact *c)
 INLINE void cohesion_force(const contact *c, cohesion_state *s, response *out)
 {
     (void)s;
+    out->spring -= cohesion_pull(c);
     out->normal -= cohesion_pull(c);
 }
 
