@@ -1,6 +1,7 @@
 #include "bed.h"
 
 #include "bed_group.h"
+#include "random.h"
 #include "radius.h"
 #include "sphere_grid.h"
 
@@ -201,6 +202,27 @@ static void measure_box(bed *b)
     }
 }
 
+/* As in a gas at rest, around the velocities that the grains have. */
+static void spread_velocities(const scene *s, int group, bed *b, int64_t first)
+{
+    double spread = s->group[group].velocity_spread_m_s, mean[3] = {0};
+    int64_t count = b->count - first;
+    int dimensions = s->dimensions == 2 ? 2 : 3;
+    if (!(spread > 0.0))
+        return;
+    for (int pass = 0; pass < 2; pass++)
+        for (int64_t i = first; i < b->count; i++) {
+            random_stream stream = random_start(s->seed, (uint32_t)group, RANDOM_VELOCITY, (uint32_t)(i - first));
+            for (int c = 0; c < dimensions; c++) {
+                double draw = spread * random_normal(&stream);
+                if (pass == 0)
+                    mean[c] += draw / (double)count;
+                else
+                    b->velocity[i][c] += draw - mean[c];
+            }
+        }
+}
+
 status bed_generate(const scene *s, bed *out, failure *why)
 {
     *out = (bed){0};
@@ -211,6 +233,8 @@ status bed_generate(const scene *s, bed *out, failure *why)
     for (int group = 0; group < s->group_count && result == STATUS_OK; group++) {
         int64_t first = out->count;
         result = generate_group(s, group, out, why);
+        if (result == STATUS_OK)
+            spread_velocities(s, group, out, first);
         if (result == STATUS_OK)
             result = check_group(s, out, first, why);
     }

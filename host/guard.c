@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define CHUNK 256
 #define FINDINGS 4
@@ -28,6 +29,7 @@ static status check_grains(simulation *sim, guard_finding *out, failure *why)
     bool bounded = sim->scene->domain.given;
     double bad = -1, left = -1, fastest = -1, speed2 = 0.0;
     char what[256];
+    memcpy(launch.drift, sim->drift_velocity, sizeof launch.drift); /* moves count as they do towards a new table */
     TRY(observe_partial(sim, chunks * FINDINGS, why));
     TRY(launch_set(kernel, "guard_particles", why, "Lmmmi", &launch, store_find(sim, "position")->mem, store_find(sim, "velocity")->mem, sim->partial,
                    (cl_int)bounded));

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-typedef enum random_purpose { RANDOM_RADIUS = 1, RANDOM_POSITION = 2 } random_purpose;
+typedef enum random_purpose { RANDOM_RADIUS = 1, RANDOM_POSITION = 2, RANDOM_VELOCITY = 3 } random_purpose;
 
 typedef struct random_stream {
     uint64_t seed;

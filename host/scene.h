@@ -137,6 +137,7 @@ typedef struct particle_group {
     radius_spec radius_m;
     bool region_given;
     double region_low_m[3], region_high_m[3];
+    double velocity_spread_m_s; /* standard deviation of every component of the velocity */
     double velocity_m_s[3], spin_rad_s[3], temperature_k, scalar; /* temperature at the start, NAN where absent */
     quantity temperature;  /* the same as written: a prescribed one may be a table in time */
     thermal_kind thermal;

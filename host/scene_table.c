@@ -135,6 +135,8 @@ static const parameter group_rows[] = {
      .doc = "where particles come from: written out, on a lattice, at random without overlap, from a table, or from an earlier run's frame"},
     {.key = "velocity_m_s", .type = PARAMETER_VECTOR, .unit = "m/s", .fallback = "[0, 0, 0]", AT(particle_group, velocity_m_s),
      .doc = "velocity at the start, where the generator gives none"},
+    {.key = "velocity_spread_m_s", .type = PARAMETER_NUMBER, .unit = "m/s", .low = 0.0, .high = 1e6, .fallback = "0", AT(particle_group, velocity_spread_m_s),
+     .doc = "standard deviation of a normal distribution that is added to every component of the velocity, its mean over the group taken out"},
     {.key = "spin_rad_s", .type = PARAMETER_VECTOR, .unit = "rad/s", .fallback = "[0, 0, 0]", AT(particle_group, spin_rad_s),
      .doc = "angular velocity at the start, where the generator gives none"},
     {.key = "temperature_k", .type = PARAMETER_OTHER, .read = read_group_temperature, .unit = "K", POSITIVE, AT(particle_group, temperature_k),

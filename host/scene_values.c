@@ -441,9 +441,13 @@ status finish_wall(reader *r, int node, void *target)
     if (w->shape == WALL_CYLINDER || w->shape == WALL_CONE)
         return planar ? check_planar_round(r, node, w) : STATUS_OK;
     if (w->shape == WALL_BOX) {
-        if (planar)
+        TRY(check_corners(r, node, w->low_m, w->high_m, "low_m", planar ? 2 : 3, false));
+        if (planar) { /* its faces reach far to both sides of the plane of the motion, whatever z the scene gives */
             w->open[4] = w->open[5] = true;
-        return check_corners(r, node, w->low_m, w->high_m, "low_m", planar ? 2 : 3, false);
+            w->high_m[2] = w->high_m[0] - w->low_m[0];
+            w->low_m[2] = -w->high_m[2];
+        }
+        return STATUS_OK;
     }
     if (planar && w->normal[2] != 0.0)
         return document_fail(r->document, document_find(r->document, node, "normal"), r->why,

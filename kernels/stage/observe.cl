@@ -284,9 +284,9 @@ __kernel void guard_particles(const clast_launch launch, __global const exact *r
     int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
     int bad = -1, fastest = -1, left = -1;
     real most = R(0.0);
-    vec3 low = from3(launch.low), high = from3(launch.high);
+    vec3 low = from3(launch.low), high = from3(launch.high), common = from3(launch.drift); /* of velocity here */
     for (int i = first; i < end; i++) {
-        vec3 x = GRAIN3(position, i), v = GRAIN3(velocity, i);
+        vec3 x = GRAIN3(position, i), v = sub(GRAIN3(velocity, i), common);
         real speed2 = dot3(v, v);
         if (!is_number(x.x + x.y + x.z) || !is_number(speed2)) {
             if (bad < 0)
