@@ -9,7 +9,7 @@ const law *const laws[] = {&law_hertz,        &law_linear,        &law_mindlin, 
                            &law_constant_torque, &law_power, &law_adhesion, &law_parallel, &law_jkr, &law_dmt, &law_sjkr,
                            &law_local_damping, &law_viscous_damping, &law_overlap_area,
                            &law_batchelor_obrien, &law_pipe_network, &law_newton,
-                           &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, &law_laser, &law_burner, &law_exponential_softening, NULL};
+                           &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, &law_laser, &law_burner, &law_exponential_softening, &law_fraction, NULL};
 
 static const struct {
     const char *name;
@@ -21,6 +21,7 @@ static const struct {
     [SLOT_SLIP] = {"slip", false},
     [SLOT_TANGENTIAL] = {"tangential", true},    [SLOT_ROLLING] = {"rolling", true},        [SLOT_MODULUS] = {"modulus", true},          [SLOT_SOFTENING] = {"softening", false},
     [SLOT_DISSIPATION] = {"dissipation", false},
+    [SLOT_DISSIPATION_HEAT] = {"dissipation_heat", true},
     [SLOT_LEDGER] = {"ledger", false},           [SLOT_WALLS] = {"walls", false},
     [SLOT_TEMPERATURE] = {"temperature", false}, [SLOT_SUBSTANCE] = {"substance", false},   [SLOT_CONDUCTION] = {"conduction", true},
     [SLOT_WALL_HEAT] = {"wall_heat", false},     [SLOT_ENVIRONMENT] = {"environment", false}, [SLOT_CONVECTION] = {"convection", true},

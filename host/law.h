@@ -23,6 +23,7 @@ typedef enum slot_id {
     SLOT_ROLLING,
     SLOT_SOFTENING,   /* derived: work of changing moduli, where the ledger is live */
     SLOT_DISSIPATION, /* derived: what contacts dissipate, where the ledger or heat asks */
+    SLOT_DISSIPATION_HEAT,
     SLOT_LEDGER, /* derived: energies, where an observable asks for them */
     SLOT_CONDUCTION,
     SLOT_WALLS,     /* derived: the shapes present */

@@ -148,7 +148,7 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
     out->law[SLOT_WALLS] = wall_law(scene);
     if (wants_ledger(scene))
         out->law[SLOT_LEDGER] = &law_ledger_energies;
-    if (out->law[SLOT_LEDGER])
+    if (out->law[SLOT_LEDGER] || out->law[SLOT_DISSIPATION_HEAT])
         out->law[SLOT_DISSIPATION] = scene->integrator == INTEGRATOR_VELOCITY_VERLET ? &law_dissipation_synchronous : &law_dissipation_tracked;
     if (out->law[SLOT_LEDGER] && out->law[SLOT_MODULUS])
         out->law[SLOT_SOFTENING] = &law_softening_tracked;
@@ -197,7 +197,7 @@ static const char *none_file(slot_id slot)
         [SLOT_RADIATION] = "none/radiation.cl",     [SLOT_SOURCE] = "none/source.cl",           [SLOT_HEAT_GENERATION] = "none/heat_generation.cl",
         [SLOT_THERMAL_GROUPS] = "none/thermal_groups.cl", [SLOT_HEAT_TALLY] = "none/heat_tally.cl",
         [SLOT_MODULUS] = "none/modulus.cl",         [SLOT_SOFTENING] = "none/softening.cl",
-        [SLOT_DISSIPATION] = "none/dissipation.cl", [SLOT_LEDGER] = "none/ledger.cl",
+        [SLOT_DISSIPATION] = "none/dissipation.cl", [SLOT_LEDGER] = "none/ledger.cl",           [SLOT_DISSIPATION_HEAT] = "none/dissipation_heat.cl",
         [SLOT_BODY] = "none/body.cl",               [SLOT_ORIENTATION] = "none/orientation.cl", [SLOT_INTEGRATOR] = NULL,
     };
     return files[slot];

@@ -280,6 +280,7 @@ static int put_observable(const output *o, const char *name, const measured *m, 
                    {"heat_convection", m->heat.tally[CLAST_TALLY_CONVECTION]},
                    {"heat_radiation", m->heat.tally[CLAST_TALLY_RADIATION]},
                    {"heat_walls", m->heat.tally[CLAST_TALLY_WALLS]},
+                   {"heat_dissipation", m->heat.tally[CLAST_TALLY_DISSIPATION]},
                    {"source_absorbed", m->heat.tally[CLAST_TALLY_ABSORBED]},
                    {"source_delivered", m->source_delivered}};
     for (size_t s = 0; s < sizeof scalars / sizeof *scalars; s++)

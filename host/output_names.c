@@ -45,7 +45,7 @@ const output_name output_observables[] = {
     {"heat_convection", "J", 1, NULL, "heat gained by convection so far"},
     {"heat_radiation", "J", 1, NULL, "heat gained by radiation so far"},
     {"heat_walls", "J", 1, NULL, "heat gained from walls so far"},
-    {"heat_dissipation", "J", 1, HEAT, "heat from dissipation"},
+    {"heat_dissipation", "J", 1, NULL, "heat gained from what contacts dissipate so far"},
     {"source_absorbed", "J", 1, NULL, "energy absorbed from sources"},
     {"source_delivered", "J", 1, NULL, "energy delivered by sources"},
     {"temperature_min", "K", 1, NULL, "lowest temperature"},

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-static const slot_id thermal_slots[] = {SLOT_CONDUCTION, SLOT_CONVECTION, SLOT_RADIATION, SLOT_SOURCE, SLOT_HEAT_GENERATION};
+static const slot_id thermal_slots[] = {SLOT_CONDUCTION, SLOT_CONVECTION, SLOT_RADIATION, SLOT_SOURCE, SLOT_HEAT_GENERATION, SLOT_DISSIPATION_HEAT};
 
 bool scene_has_heat(const scene *s)
 {
@@ -45,7 +45,7 @@ bool scene_has_temperature(const scene *s)
 
 bool scene_tallies_heat(const scene *s)
 {
-    static const char *const names[] = {"heat_sources", "heat_convection", "heat_radiation", "heat_walls", "source_absorbed"};
+    static const char *const names[] = {"heat_sources", "heat_convection", "heat_radiation", "heat_walls", "source_absorbed", "heat_dissipation"};
     for (size_t k = 0; k < sizeof names / sizeof *names; k++)
         if (scene_outputs(s, names[k]))
             return true;

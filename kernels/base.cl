@@ -135,6 +135,11 @@ typedef struct spring_step {
     vec3 damper;        /* force or moment of the damper on i */
 } spring_step;
 
+/* What a contact dissipates in a step, and the work of stiffnesses that change under a stretched spring, J. */
+typedef struct dissipation {
+    real normal, tangential, rolling, stiffness;
+} dissipation;
+
 /* What the laws make of it. */
 typedef struct response {
     real spring, damper; /* the two parts of the normal force */
@@ -143,12 +148,8 @@ typedef struct response {
     vec3 tangential; /* force on i */
     vec3 rolling;    /* moment on i; j gets the opposite */
     spring_step sliding, turning;
+    dissipation lost;
 } response;
-
-/* What a contact dissipates in a step, and the work of stiffnesses that change under a stretched spring, J. */
-typedef struct dissipation {
-    real normal, tangential, rolling, stiffness;
-} dissipation;
 
 /* A grain over one step, for what adds up its energies: velocities and spins before and after, total force and torque without and with the
  * background damping. */
@@ -189,4 +190,5 @@ typedef struct grain {
 typedef struct grain_heat {
     real contacts; /* all of them, walls included */
     real walls, sources, convection, radiation, absorbed; /* absorbed: of the sources' that of beams */
+    real rubbed; /* from dissipation */
 } grain_heat;

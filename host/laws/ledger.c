@@ -1,6 +1,9 @@
 #include "fields.h"
 #include "laws.h"
 
+#include <stdio.h>
+#include <string.h>
+
 static const field field_tangential_stored = {"tangential_stored", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, "J",
                                               "energy of the tangential spring after the last step"};
 static const field field_tangential_at = {"tangential_stiffness", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, "N/m", "its stiffness then"};
@@ -50,4 +53,24 @@ const law law_ledger_energies = {
     .kernel_file = "effect/ledger_energies.cl",
     .pair_fields = {&field_record_energy},
     .particle_fields = {&field_record_energy, &field_dissipated, &field_work_contacts, &field_work_grains},
+};
+
+static const field field_dissipation_heat = {"dissipation_heat", PER_RECORD, FIELD_REAL, 1, FIELD_RESULT, "J", "heat of this step for each grain of the contact"};
+
+static void fraction_constant(const double *option, char *text, size_t size)
+{
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "#define DISSIPATION_FRACTION R(%#.17g)\n", option[0]);
+}
+
+const law law_fraction = {
+    .name = "fraction",
+    .slot = SLOT_DISSIPATION_HEAT,
+    .doc = "A fraction of what contact damping, sliding and rolling dissipate heats the two grains, half each; at a wall all of it heats the grain.",
+    .source = "docs/theory.md",
+    .kernel_file = "effect/dissipation_heat_fraction.cl",
+    .options = {{"fraction", NULL, 0, 1, 1, "share of the dissipated energy that becomes heat of the grains"}},
+    .pair_fields = {&field_dissipation_heat},
+    .particle_fields = {&field_dissipation_heat},
+    .constants = fraction_constant,
 };

@@ -183,7 +183,8 @@ typedef struct clast_columns {
 #define CLAST_TALLY_RADIATION 2
 #define CLAST_TALLY_WALLS 3
 #define CLAST_TALLY_ABSORBED 4 /* the part of the sources' that beams brought */
-#define CLAST_TALLIES 5
+#define CLAST_TALLY_DISSIPATION 5
+#define CLAST_TALLIES 6
 
 #define CLAST_LEVELS_MAX 12
 

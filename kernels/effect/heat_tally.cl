@@ -18,6 +18,7 @@ INLINE void heat_tally_add(__global exact *tally, const grain_heat *h)
     heat_tally_more(tally + CLAST_TALLY_RADIATION, h->radiation);
     heat_tally_more(tally + CLAST_TALLY_WALLS, h->walls);
     heat_tally_more(tally + CLAST_TALLY_ABSORBED, h->absorbed);
+    heat_tally_more(tally + CLAST_TALLY_DISSIPATION, h->rubbed);
 }
 
 INLINE void heat_tally_keep(__global real *kept, const grain_heat *h, real weight, bool first)
@@ -35,4 +36,5 @@ INLINE void heat_tally_kept(__global const real *kept, grain_heat *h)
     h->convection = kept[3];
     h->radiation = kept[4];
     h->absorbed = kept[5];
+    h->rubbed = R(0.0); /* nothing moves */
 }

@@ -5,6 +5,6 @@
 #define HEAT_TALLY_KEEP(kept, i, h, weight, first) (void)(weight)
 #define HEAT_TALLY_KEPT(kept, i, h)                                                     \
     do {                                                                                \
-        grain_heat nothing = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};          \
+        grain_heat nothing = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};         \
         *(h) = nothing;                                                                 \
     } while (0)

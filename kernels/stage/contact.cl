@@ -6,7 +6,7 @@
     WRITE(real, force) COMPOSITION_PAIR_FIELDS(READ, WRITE) MOTION_PAIR_FIELDS(READ, WRITE) ROTATION_PAIR_FIELDS(READ, WRITE)    \
     BONDING_PAIR_FIELDS(READ, WRITE) BOND_PAIR_FIELDS(READ, WRITE) COHESION_PAIR_FIELDS(READ, WRITE)                           \
     SLIP_PAIR_FIELDS(READ, WRITE) TANGENTIAL_PAIR_FIELDS(READ, WRITE) ROLLING_PAIR_FIELDS(READ, WRITE)                                        \
-    DISSIPATION_PAIR_FIELDS(READ, WRITE) LEDGER_PAIR_FIELDS(READ, WRITE) WALLS_PAIR_FIELDS(READ, WRITE)                                  \
+    DISSIPATION_PAIR_FIELDS(READ, WRITE) DISSIPATION_HEAT_PAIR_FIELDS(READ, WRITE) LEDGER_PAIR_FIELDS(READ, WRITE) WALLS_PAIR_FIELDS(READ, WRITE)                                  \
     TEMPERATURE_PAIR_FIELDS(READ, WRITE) MODULUS_PAIR_FIELDS(READ, WRITE) SOFTENING_PAIR_FIELDS(READ, WRITE)                       \
     CONDUCTION_PAIR_FIELDS(READ, WRITE) WALL_HEAT_PAIR_FIELDS(READ, WRITE) INTEGRATOR_PAIR_FIELDS(READ, WRITE)
 #define PAIR_DECLARE PAIR_FIELDS(DECLARE_READ, DECLARE_WRITE)
@@ -141,8 +141,8 @@ INLINE void contact_laws(contact *c, contact_state *s, response *out)
     cohesion_force(c, &s->cohesion, out);
     tangential_force(c, &s->slip, &s->tangential, out);
     rolling_moment(c, &s->rolling, out);
-    dissipation lost = dissipation_of(c, out, &s->dissipation);
-    lost.stiffness += softening_work(c, &s->softening);
-    ledger_contact(&s->ledger, lost);
+    out->lost = dissipation_of(c, out, &s->dissipation);
+    out->lost.stiffness += softening_work(c, &s->softening);
+    ledger_contact(&s->ledger, out->lost);
     bond_shear(c, &s->bond, out);
 }

@@ -4,7 +4,7 @@
     READ(exact, built_position) MOTION_PARTICLE_FIELDS(READ, WRITE) \
     ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE) TEMPERATURE_PARTICLE_FIELDS(READ, WRITE)                \
     SUBSTANCE_PARTICLE_FIELDS(READ, WRITE) ENVIRONMENT_PARTICLE_FIELDS(READ, WRITE) CONDUCTION_PARTICLE_FIELDS(READ, WRITE)             \
-    SOURCE_PARTICLE_FIELDS(READ, WRITE) THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE) MODULUS_PARTICLE_FIELDS(READ, WRITE) DISSIPATION_PARTICLE_FIELDS(READ, WRITE) LEDGER_PARTICLE_FIELDS(READ, WRITE)           \
+    SOURCE_PARTICLE_FIELDS(READ, WRITE) THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE) MODULUS_PARTICLE_FIELDS(READ, WRITE) DISSIPATION_PARTICLE_FIELDS(READ, WRITE) DISSIPATION_HEAT_PARTICLE_FIELDS(READ, WRITE) LEDGER_PARTICLE_FIELDS(READ, WRITE)           \
     INTEGRATOR_PARTICLE_FIELDS(READ, WRITE)
 #define PARTICLE_DECLARE PARTICLE_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PARTICLE_PASS PARTICLE_FIELDS(PASS, PASS)
@@ -56,7 +56,10 @@ INLINE void particle_heat(const clast_launch *launch, int i, const grain *g, gra
     h->radiation = dt * (radiation_coefficient(g, g->temperature) * apart);
     h->walls = dt * h->walls;
     h->absorbed = dt * absorbed;
-    real gain = dt * (h->contacts + given) + (h->convection + h->radiation);
+    real rubbed = R(0.0);
+    DISSIPATION_HEAT_GATHER(launch, i, rubbed);
+    h->rubbed = rubbed;
+    real gain = dt * (h->contacts + given) + (h->convection + h->radiation) + rubbed;
     precise after = temperature_after(TEMPERATURE_PRECISE(i), gain / capacity);
     precise held = THERMAL_GROUP_TEMPERATURE(launch, i, after);
     h->sources = dt * given + capacity * rounded(precise_sub(held, after));

@@ -58,6 +58,7 @@ static const law *const every_law[] = {
     &law_heat_tally,
     &law_exponential_softening,
     &law_softening_tracked,
+    &law_fraction,
     &law_dissipation_tracked,
     &law_dissipation_synchronous,
     &law_ledger_energies,
@@ -95,9 +96,9 @@ static void complete(live_laws *live)
         live->law[SLOT_ROTATION] = &law_rotation_spin;
     if (live->law[SLOT_BONDING] == &law_bonding_temperature)
         live->law[SLOT_TEMPERATURE] = &law_temperature_pairs;
-    if (live->law[SLOT_LEDGER])
+    if (live->law[SLOT_LEDGER] || live->law[SLOT_DISSIPATION_HEAT])
         live->law[SLOT_DISSIPATION] = live->law[SLOT_INTEGRATOR] ? &law_dissipation_synchronous : &law_dissipation_tracked;
-    if (live->law[SLOT_MODULUS])
+    if (live->law[SLOT_MODULUS] || live->law[SLOT_DISSIPATION_HEAT])
         live->law[SLOT_TEMPERATURE] = &law_temperature_grains;
     complete_heat(live);
     live->frozen = live->law[SLOT_TEMPERATURE] != NULL;
