@@ -22,6 +22,7 @@ typedef struct bench_figures {
     double bytes_per_particle, contacts_per_particle, records_per_particle;
     double pair_s, particle_s; /* device time of the two stages in a step */
     double kinetic_j;
+    int launches, chunk_records, force_records;
     char device[1024];
 } bench_figures;
 
@@ -82,30 +83,26 @@ static status event_seconds(cl_event event, double *sum, failure *why)
     return STATUS_OK;
 }
 
-static status launch_timed(cl_command_queue queue, cl_kernel kernel, int64_t items, double *sum, failure *why)
+static status take_times(const simulation *sim, cl_event *event, bench_figures *out, failure *why)
 {
-    size_t local = CLAST_BLOCK, global = ((size_t)items + local - 1) / local * local;
-    cl_event event;
-    TRY_CL(clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &global, &local, 0, NULL, &event), "timing a kernel");
-    cl_int code = clWaitForEvents(1, &event);
-    status result = code == CL_SUCCESS ? event_seconds(event, sum, why)
-                                       : fail(why, STATUS_DEVICE, "the device failed: timing a kernel (%s)", device_error_name(code));
-    clReleaseEvent(event);
-    return result;
+    for (int p = 0; p < sim->plan.count; p++)
+        TRY(event_seconds(event[p], sim->plan.piece[p].pairs ? &out->pair_s : &out->particle_s, why));
+    return STATUS_OK;
 }
 
-static status profile_steps(simulation *sim, cl_command_queue queue, bench_figures *out, failure *why)
+static status profile_steps(simulation *sim, cl_command_queue queue, cl_event *event, bench_figures *out, failure *why)
 {
-    cl_kernel pair = launch_kernel(sim, "pair_stage"), particle = launch_kernel(sim, "particle_stage");
     clast_launch launch = launch_values(sim);
     clast_control control = {.halt_step = PROFILE_STEPS};
     launch.travel2 = 1.0; /* no table falls due meanwhile */
     TRY(store_write(sim, sim->control, 0, sizeof control, &control, why));
     for (int s = 0; s < PROFILE_STEPS; s++) {
-        TRY(launch_pass(pair, "pair_stage", &launch, why));
-        TRY(launch_pass(particle, "particle_stage", &launch, why));
-        TRY(launch_timed(queue, pair, sim->table.record_count, &out->pair_s, why));
-        TRY(launch_timed(queue, particle, sim->count, &out->particle_s, why));
+        TRY(step_plan_enqueue(sim, queue, launch, event, why));
+        TRY_CL(clFinish(queue), "timing a step");
+        status result = take_times(sim, event, out, why);
+        for (int p = 0; p < sim->plan.count; p++)
+            clReleaseEvent(event[p]);
+        TRY(result);
     }
     out->pair_s /= PROFILE_STEPS;
     out->particle_s /= PROFILE_STEPS;
@@ -118,8 +115,10 @@ static status profile(simulation *sim, bench_figures *out, failure *why)
     cl_int code;
     cl_command_queue queue = clCreateCommandQueue(sim->device->context, sim->device->info.id, CL_QUEUE_PROFILING_ENABLE, &code);
     TRY_CL(code, "making a queue that takes times");
-    status result = profile_steps(sim, queue, out, why);
+    cl_event *event = calloc((size_t)sim->plan.count, sizeof *event);
+    status result = event ? profile_steps(sim, queue, event, out, why) : fail(why, STATUS_ERROR, "out of memory");
     clFinish(queue);
+    free(event);
     clReleaseCommandQueue(queue);
     return result;
 }
@@ -153,6 +152,9 @@ static status measure(simulation *sim, const bench_options *options, bench_figur
     TRY(observe_contact_sums(sim, &contacts, why));
     out->particles = sim->count;
     out->kinetic_j = sums.kinetic;
+    out->launches = sim->plan.count;
+    out->chunk_records = sim->plan.chunk_records;
+    out->force_records = sim->plan.force_records;
     out->bytes_per_particle = (double)sim->bytes / (double)sim->count;
     out->contacts_per_particle = 2.0 * (double)contacts.pairs / (double)sim->count;
     out->records_per_particle = (double)sim->table.record_count / (double)sim->count;
@@ -188,6 +190,11 @@ static void print_figures(const bench_figures *f, const bench_options *options)
     printf("  %-28s%lld, %.3g %% of the wall time\n", "contact tables built", (long long)f->rebuilds, 100.0 * f->rebuild_s / f->wall_s);
     printf("  %-28s%.4g ns a grain and step\n", "pair stage", 1e9 * f->pair_s / n);
     printf("  %-28s%.4g ns a grain and step\n", "particle stage", 1e9 * f->particle_s / n);
+    if (f->chunk_records > 0)
+        printf("  %-28s%d, in chunks of %d records, forces in %s%d\n", "launches a step", f->launches, f->chunk_records,
+               f->force_records > 0 ? "places for " : "all of ", f->force_records > 0 ? f->force_records : (int)(f->records_per_particle * n));
+    else
+        printf("  %-28s%d\n", "launches a step", f->launches);
     printf("  %-28s%.4g a grain\n", "device memory, bytes", f->bytes_per_particle);
     printf("  %-28s%.3f a grain, %.3f records in the table\n", "contacts with others", f->contacts_per_particle, f->records_per_particle);
     printf("  %-28s%.3g J\n", "kinetic energy", f->kinetic_j);
@@ -197,12 +204,13 @@ static status write_json(const bench_figures *f, const bench_options *options, f
 {
     char effects[128];
     name_effects(options->effects, effects, sizeof effects);
-    json_t *root = json_pack("{s:s, s:s, s:I, s:I, s:f, s:b, s:s, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f}", "device", f->device, "precision", options->mixed ? "mixed" : "double",
+    json_t *root = json_pack("{s:s, s:s, s:I, s:I, s:f, s:b, s:s, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:i, s:i, s:i}", "device", f->device, "precision", options->mixed ? "mixed" : "double",
                              "particles", (json_int_t)f->particles, "steps", (json_int_t)f->steps, "step_s", STEP_S, "rolling",
                              (int)(options->effects & BED_ROLLING), "effects", effects, "wall_s", f->wall_s, "particle_steps_per_s", f->particle_steps_per_s, "bytes_per_particle",
                              f->bytes_per_particle, "rebuilds", (json_int_t)f->rebuilds, "rebuild_s", f->rebuild_s, "pair_stage_s",
                              f->pair_s, "particle_stage_s", f->particle_s, "contacts_per_particle", f->contacts_per_particle,
-                             "records_per_particle", f->records_per_particle, "kinetic_energy_j", f->kinetic_j);
+                             "records_per_particle", f->records_per_particle, "kinetic_energy_j", f->kinetic_j, "launches_per_step", f->launches, "chunk_records",
+                             f->chunk_records, "force_records", f->force_records);
     FILE *file = root ? fopen(options->json_path, "w") : NULL;
     bool whole = file && json_dumpf(root, file, JSON_INDENT(2)) == 0 && fputc('\n', file) != EOF;
     if (file && fclose(file) != 0)

@@ -118,12 +118,25 @@ status launch_bind(simulation *sim, const char *kernel, int first, failure *why)
     return STATUS_OK;
 }
 
+/* The particle stage finds forces where chunks share places for them. */
+static status bind_placed_slots(simulation *sim, cl_kernel particle, failure *why)
+{
+    const char *names[64];
+    int count = launch_argument_names(&sim->live, "particle_stage", names, 64);
+    for (int a = 0; a < count; a++)
+        if (strcmp(names[a], "slots") == 0)
+            TRY_CL(clSetKernelArg(particle, (cl_uint)(2 + a), sizeof sim->table.placed, &sim->table.placed), "particle_stage");
+    return STATUS_OK;
+}
+
 /* After a table has been built its buffers may be others. */
 status launch_bind_stages(simulation *sim, failure *why)
 {
     cl_kernel pair = launch_kernel(sim, "pair_stage"), particle = launch_kernel(sim, "particle_stage");
     TRY(launch_bind(sim, "pair_stage", 2, why));
     TRY(launch_bind(sim, "particle_stage", 2, why));
+    if (sim->plan.force_records > 0)
+        TRY(bind_placed_slots(sim, particle, why));
     TRY_CL(clSetKernelArg(pair, 1, sizeof sim->control, &sim->control), "pair_stage");
     TRY_CL(clSetKernelArg(particle, 1, sizeof sim->control, &sim->control), "particle_stage");
     const char *const others[] = {"pair_probe", "observe_records", "limit_records"};
@@ -187,6 +200,7 @@ status launch_open(simulation *sim, failure *why)
                                         "scan_write",       "table_bin",       "table_order",       "table_order_cells", "table_permute_real", "table_permute_exact",
                                         "table_permute_int", "table_count",    "table_fill",        "table_pad",         "table_widths",
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
+                                        "table_last_records", "table_releases", "table_place",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
                                         "particle_synchronise", "step_loop", "servo_place", "servo_stage", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",

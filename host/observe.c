@@ -138,22 +138,77 @@ status observe_flows(simulation *sim, failure *why)
     return run_on_records(sim, "pair_probe", why);
 }
 
+static status read_ints(simulation *sim, cl_mem mem, int64_t count, int32_t **out, failure *why)
+{
+    *out = malloc(sizeof **out * (size_t)(count + 1));
+    if (!*out)
+        return fail(why, STATUS_ERROR, "out of memory");
+    return store_read(sim, mem, 0, 4 * (uint64_t)count, *out, why);
+}
+
+/* The records in the order of their owners' permanent ids, and of a grain as its partners' ids have it, walls last: sums in this order do not
+ * depend on when the table was built. Where the grains stand, records are packed in the order of their owners and then of ids. */
+typedef struct record_order {
+    int32_t *record;
+    int64_t count;
+} record_order;
+
+static void sort_records(const simulation *sim, const int32_t *owner, const int32_t *id, int64_t *start, record_order *out)
+{
+    const contact_table *t = &sim->table;
+    const int64_t first[2] = {0, t->wall_base}, end[2] = {t->pair_count, records_end(sim)};
+    for (int part = 0; part < 2; part++)
+        for (int64_t k = first[part]; k < end[part]; k++)
+            start[id[owner[k]] + 1]++;
+    for (int64_t i = 0; i < sim->id_count; i++)
+        start[i + 1] += start[i];
+    for (int part = 0; part < 2; part++)
+        for (int64_t k = first[part]; k < end[part]; k++)
+            out->record[start[id[owner[k]]]++] = (int32_t)k;
+    out->count = t->pair_count + end[1] - first[1];
+}
+
+static status order_records(simulation *sim, record_order *out, failure *why)
+{
+    const contact_table *t = &sim->table;
+    int32_t *owner = NULL, *id = NULL;
+    int64_t *start = calloc((size_t)sim->id_count + 2, sizeof *start);
+    *out = (record_order){.record = malloc(sizeof *out->record * (size_t)(t->record_count + 1))};
+    status result = start && out->record ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
+    if (result == STATUS_OK)
+        result = read_ints(sim, t->owner[t->now], t->record_count, &owner, why);
+    if (result == STATUS_OK)
+        result = read_ints(sim, store_find(sim, "id")->mem, sim->stride, &id, why);
+    if (result == STATUS_OK)
+        sort_records(sim, owner, id, start, out);
+    free(owner);
+    free(id);
+    free(start);
+    return result;
+}
+
 status observe_contact_sums(simulation *sim, contact_sums *out, failure *why)
 {
     double *ratio = NULL, *energy = NULL;
+    record_order order;
     memset(out, 0, sizeof *out);
     TRY(run_on_records(sim, "observe_records", why));
     cl_mem force = store_find(sim, "force")->mem;
     status result = read_component(sim, force, 0, &ratio, why);
     if (result == STATUS_OK)
         result = read_component(sim, force, 1, &energy, why);
-    for (int64_t k = 0; k < records_end(sim) && result == STATUS_OK; k++)
+    status ordered = order_records(sim, &order, why);
+    result = result == STATUS_OK ? ordered : result;
+    for (int64_t n = 0; n < order.count && result == STATUS_OK; n++) {
+        int32_t k = order.record[n];
         if (ratio[k] > 0.0) {
             out->overlap_max = fmax(out->overlap_max, ratio[k]);
             out->elastic += energy[k];
             out->contacts++;
             out->pairs += k < sim->table.wall_base;
         }
+    }
+    free(order.record);
     free(ratio);
     free(energy);
     return result;
@@ -162,6 +217,7 @@ status observe_contact_sums(simulation *sim, contact_sums *out, failure *why)
 typedef struct record_arrays {
     int32_t *owner, *other, *id;
     double *bonded; /* NULL where no bond law is live */
+    record_order order;
     double *overlap, *radius, *force[3], *torque[3], *heat, *position; /* position: [grain][3]; heat: NULL without conduction */
 } record_arrays;
 
@@ -172,6 +228,7 @@ static void free_records(record_arrays *r)
     free(r->id);
     free(r->overlap);
     free(r->bonded);
+    free(r->order.record);
     free(r->radius);
     free(r->position);
     free(r->heat);
@@ -179,14 +236,6 @@ static void free_records(record_arrays *r)
         free(r->force[c]);
         free(r->torque[c]);
     }
-}
-
-static status read_ints(simulation *sim, cl_mem mem, int64_t count, int32_t **out, failure *why)
-{
-    *out = malloc(sizeof **out * (size_t)(count + 1));
-    if (!*out)
-        return fail(why, STATUS_ERROR, "out of memory");
-    return store_read(sim, mem, 0, 4 * (uint64_t)count, *out, why);
 }
 
 static status read_grains(simulation *sim, const stored_field *stored, double **out, failure *why)
@@ -204,6 +253,7 @@ static status read_records(simulation *sim, record_arrays *r, failure *why)
     stored_field *torque = sim->live.law[SLOT_ROTATION] ? store_find(sim, "torque") : NULL;
     stored_field *heat = sim->live.law[SLOT_CONDUCTION] ? store_find(sim, "heat") : NULL;
     memset(r, 0, sizeof *r);
+    TRY(order_records(sim, &r->order, why));
     TRY(run_on_records(sim, "observe_records", why));
     TRY(read_component(sim, force, 2, &r->overlap, why));
     stored_field *bonded = sim->live.law[SLOT_BOND] ? store_find(sim, "bonded") : NULL;
@@ -311,7 +361,8 @@ status observe_contacts(simulation *sim, bool walls_only, live_contact **out, in
 
 static void add_totals(const simulation *sim, const record_arrays *r, double *const own[3], double *const opposite[3], double *out)
 {
-    for (int64_t k = 0; k < records_end(sim); k++) {
+    for (int64_t n = 0; n < r->order.count; n++) {
+        int64_t k = r->order.record[n];
         if (!is_live(r, k))
             continue;
         for (int c = 0; c < 3; c++) {
@@ -352,8 +403,9 @@ status observe_virial(simulation *sim, double *stress, failure *why)
     const domain *d = &sim->scene->domain;
     memset(stress, 0, 9 * sizeof *stress);
     status result = read_records(sim, &r, why);
-    for (int64_t k = 0; k < sim->table.wall_base && result == STATUS_OK; k++) {
-        if (!is_live(&r, k))
+    for (int64_t n = 0; n < r.order.count && result == STATUS_OK; n++) {
+        int64_t k = r.order.record[n];
+        if (k >= sim->table.wall_base || !is_live(&r, k))
             continue;
         double branch[3];
         for (int c = 0; c < 3; c++) {

@@ -133,6 +133,14 @@ static void store_binary(cl_program program, const char *path)
     free(binary);
 }
 
+/* pocl keeps what it has compiled itself, kernel by kernel as they are used; asked for a program as a whole it would compile every kernel twice,
+ * in a form that it then does not run. */
+static bool driver_keeps_programs(const device *device)
+{
+    const char *switched = getenv("POCL_KERNEL_CACHE");
+    return strcmp(device->info.platform_name, "Portable Computing Language") == 0 && !(switched && strcmp(switched, "0") == 0);
+}
+
 static status report_build(const device *device, cl_program program, const char *text, uint64_t key, failure *why)
 {
     size_t size = 0;
@@ -162,7 +170,7 @@ status program_build(const device *device, const char *text, cl_program *out, fa
     key = hash_text(hash_text(key, build_options), device->info.name);
     key = hash_text(hash_text(key, device->info.driver), device->info.version);
     char path[4096];
-    bool cached = cache_directory(path, sizeof path);
+    bool cached = !driver_keeps_programs(device) && cache_directory(path, sizeof path);
     if (cached) {
         size_t used = strlen(path);
         snprintf(path + used, sizeof path - used, "/%016llx.bin", (unsigned long long)key);

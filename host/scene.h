@@ -262,6 +262,7 @@ typedef struct table_spec {
     double skin_m;         /* NAN: auto */
     int64_t batch_steps;   /* 0: auto */
     step_form step_form;
+    int64_t chunk_records; /* 0: auto */
 } table_spec;
 
 typedef struct guard_spec {

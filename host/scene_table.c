@@ -421,6 +421,10 @@ static const parameter table_rows[] = {
      .doc = "steps enqueued before the host looks"},
     {.key = "step_form", .type = PARAMETER_CHOICE, .choices = "auto|two_kernels|one_group", .fallback = "auto", AT(table_spec, step_form),
      .doc = "two kernels a step, or one work-group that loops over steps, for small beds; `auto` goes by size"},
+    {.key = "chunk_records", .type = PARAMETER_INTEGER, .low = 1, .high = 1e9, .word = "auto",
+     .fallback = "auto", AT(table_spec, chunk_records),
+     .doc = "records of pairs that go through a step together, so that their forces stay in the cache (rounded up to a power of two; as many as"
+            " there are: all at once); `auto`: chunks for large beds on a CPU"},
     {0},
 };
 const section table_section = {.name = "contact table", .doc = "How contacts are searched. Changes speed, not results.", .row = table_rows};

@@ -233,6 +233,7 @@ void simulation_free(simulation *sim)
     servo_free(sim);
     heat_free(sim);
     frozen_free(sim);
+    step_plan_free(&sim->plan);
     for (int f = 0; f < sim->field_count; f++)
         store_release(sim, &sim->field[f].mem, 0);
     cl_mem *const rest[] = {&sim->where, &sim->partial, &sim->control, &sim->faces, &sim->movers, &sim->constants, &sim->built_position, &sim->scratch4,
@@ -651,17 +652,13 @@ clast_launch launch_of_step(const simulation *sim, int s, int bond_step)
 
 static status enqueue_batch(simulation *sim, int steps, failure *why)
 {
-    cl_kernel pair = launch_kernel(sim, "pair_stage"), particle = launch_kernel(sim, "particle_stage");
     int bond_step = bonds_step(sim, steps);
     if (step_loop_now(sim))
         return step_loop_enqueue(sim, steps, why);
     for (int s = 0; s < steps; s++) {
         clast_launch launch = launch_of_step(sim, s, bond_step);
         TRY(heat_sum_areas(sim, &launch, why));
-        TRY(launch_pass(pair, "pair_stage", &launch, why));
-        TRY(launch_pass(particle, "particle_stage", &launch, why));
-        TRY(launch_run(sim, pair, "pair_stage", sim->table.record_count, CLAST_BLOCK, why));
-        TRY(launch_run(sim, particle, "particle_stage", sim->count, CLAST_BLOCK, why));
+        TRY(step_plan_enqueue(sim, sim->device->queue, launch, NULL, why));
         TRY(servo_step(sim, &launch, steps, why));
     }
     return STATUS_OK;

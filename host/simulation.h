@@ -36,8 +36,11 @@ typedef struct contact_table {
     int now; /* generation in use */
     int64_t record_capacity, slot_capacity, cell_capacity;
     int64_t slots_held[2]; /* of each generation */
+    int slot_count;        /* of the generation in use */
     bool slots_outgrown[2];
     int old_wall_base; /* of the generation in use, while the next one is built */
+    cl_mem placed; /* slots that lead to the places of forces where chunks share them; NULL until they do */
+    int64_t placed_held;
     int pair_count, wall_base, record_count; /* record_count: end of the wall records, filled up to a work-group */
     int wall_record_count;
     int64_t record_stride;
@@ -55,6 +58,21 @@ typedef struct contact_table {
 typedef struct heat_limit {
     double conduction, convection, radiation, all;
 } heat_limit;
+
+/* One launch of a step: work-groups of the pair stage or of the particle stage. */
+typedef struct step_piece {
+    bool pairs;
+    int first, count; /* work-groups */
+    int force_shift;
+} step_piece;
+
+/* The launches of a step, see step_plan.c. */
+typedef struct step_plan {
+    step_piece *piece;
+    int count, capacity;
+    int chunk_records; /* 0: the stages go whole */
+    int force_records; /* places for forces of pairs; 0: every record has its own */
+} step_plan;
 
 typedef struct step_limit {
     double limit_s;       /* largest stable step; infinite where nothing binds */
@@ -122,6 +140,7 @@ typedef struct simulation {
     cl_mem velocity_now, spin_now; /* synchronised, where velocities stand half a step behind */
     int64_t partial_capacity;
     contact_table table;
+    step_plan plan;
 
     int face_count, mover_count;
     moving_body *wall_body, *group_body;
@@ -234,6 +253,13 @@ bool step_loop_now(const simulation *sim);
 int step_loop_items(const simulation *sim);
 status step_loop_bind(simulation *sim, failure *why);
 status step_loop_enqueue(simulation *sim, int steps, failure *why);
+
+/* step_plan.c */
+/* After every table. */
+status step_plan_make(simulation *sim, failure *why);
+void step_plan_free(step_plan *plan);
+/* Enqueues one step; takes an event of every piece where `events` is given. */
+status step_plan_enqueue(const simulation *sim, cl_command_queue queue, clast_launch launch, cl_event *events, failure *why);
 
 /* table.c */
 status table_create(simulation *sim, failure *why);

@@ -56,7 +56,7 @@ void table_free(simulation *sim)
     release_pair(sim, t->other, 0);
     release_pair(sim, t->slots, 0);
     release_pair(sim, t->slot_offset, 0);
-    cl_mem *const rest[] = {&t->match, &t->work[0], &t->work[1], &t->work[2], &t->work[3], &t->work[4], &t->cell_count, &t->cell_start, &t->sums, &t->grid, &t->width};
+    cl_mem *const rest[] = {&t->match, &t->placed, &t->work[0], &t->work[1], &t->work[2], &t->work[3], &t->work[4], &t->cell_count, &t->cell_start, &t->sums, &t->grid, &t->width};
     for (size_t m = 0; m < sizeof rest / sizeof *rest; m++)
         store_release(sim, rest[m], 0);
 }
@@ -307,6 +307,7 @@ static status fill_slots(simulation *sim, const clast_launch *launch, failure *w
     cl_uint total;
     TRY(store_read(sim, t->slot_offset[next], 4 * (uint64_t)blocks, sizeof total, &total, why));
     TRY(fit_slots(sim, total, why));
+    t->slot_count = (int)total;
     TRY(store_fill(sim, t->slots[next], 4 * (uint64_t)total, why));
     TRY(store_fill(sim, t->work[WORK_A], 4 * (uint64_t)sim->stride, why));
     TRY(launch_set(slots, "table_slots", why, "mmmmmiii", t->owner[next], t->other[next], t->slot_offset[next], t->work[WORK_A], t->slots[next],
@@ -388,6 +389,7 @@ static status finish(simulation *sim, failure *why)
     t->skin_look = FIRST_SKIN_LOOK;
     TRY(store_copy(sim, store_find(sim, "position")->mem, sim->built_position, 0, 0, field_bytes(sim, &field_position), why));
     TRY(simulation_choose_drift(sim, why));
+    TRY(step_plan_make(sim, why));
     return launch_bind_stages(sim, why);
 }
 
@@ -451,5 +453,5 @@ status table_travel(simulation *sim, double *out, failure *why)
 uint64_t table_bytes(const simulation *sim)
 {
     const contact_table *t = &sim->table;
-    return 4 * (uint64_t)(5 * (sim->stride + 1) + 5 * t->record_capacity + t->slots_held[0] + t->slots_held[1] + 2 * t->cell_capacity);
+    return 4 * (uint64_t)(5 * (sim->stride + 1) + 5 * t->record_capacity + t->slots_held[0] + t->slots_held[1] + t->placed_held + 2 * t->cell_capacity);
 }

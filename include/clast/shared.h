@@ -38,7 +38,9 @@ typedef struct clast_launch {
     clast_f64 length[3];     /* periodic lengths; 0 where not periodic */
     clast_i64 record_stride;   /* elements between the components of a field of records */
     clast_i32 particle_count;
+    clast_i32 first_group;      /* place of this launch's first work-group among those of the whole stage */
     clast_i32 first_wall_group; /* work-groups of the pair stage from here on hold wall records */
+    clast_i32 force_shift;      /* the pair stage puts the force of record k at k - force_shift */
     clast_i32 step;             /* counts from the start of the batch */
     clast_i32 face_row;         /* row of the wall and mover tables for this step */
     clast_i32 mover_row;

@@ -29,7 +29,8 @@
     vec3 total = add_scaled(out.tangential, -out.normal, c.n);           \
     vec3 lever = cross3(c.n, out.tangential);                            \
     vec3 on_owner = add_scaled(out.rolling, c.arm_i, lever);             \
-    STORE3(force, launch->record_stride, k, total);                      \
+    int at = k - launch->force_shift;                                    \
+    STORE3(force, launch->record_stride, at, total);                     \
     account;                                                             \
     keep(launch, k, s)
 #define PAIR_KEEP_NOTHING(launch, k, s)
@@ -46,7 +47,7 @@
         DISSIPATION_HEAT_STORE(launch, k, out.lost, R(0.5));                                        \
         CONDUCTION_STORE(launch, k, conduction_conductance(&c) * (c.temperature_j - c.temperature_i)); \
         vec3 on_other = add_scaled(scale(R(-1.0), out.rolling), c.arm_j, lever);                    \
-        ROTATION_STORE_TORQUE(launch, k, on_owner, on_other);                                       \
+        ROTATION_STORE_TORQUE(launch, at, on_owner, on_other);                                      \
     }
 
 #define PAIR_OF_WALL(name, keep)                                                                    \
@@ -62,7 +63,7 @@
         CONDUCTION_STORE(launch, k, WALL_HEAT_FLOW(launch, other[k], &c, conduction_wall_conductance(&c))); \
         vec3 lever_wall = rounded3(precise3_sub(touch.point, touch.pivot));                         \
         vec3 on_wall = sub(cross3(total, lever_wall), out.rolling);                                 \
-        ROTATION_STORE_TORQUE(launch, k, on_owner, on_wall);                                        \
+        ROTATION_STORE_TORQUE(launch, at, on_owner, on_wall);                                       \
     }
 
 PAIR_OF_GRAINS(pair_of_grains, PAIR_STORE_STATE)
@@ -74,8 +75,8 @@ __kernel void pair_stage(const clast_launch launch, __global const clast_control
 {
     if (control->halt_step <= launch.step)
         return;
-    int k = get_global_id(0);
-    if ((int)get_group_id(0) < launch.first_wall_group)
+    int group = launch.first_group + (int)get_group_id(0), k = CLAST_BLOCK * group + (int)get_local_id(0);
+    if (group < launch.first_wall_group)
         pair_of_grains(&launch, k PAIR_PASS);
     else
         pair_of_wall(&launch, k PAIR_PASS);

@@ -124,5 +124,5 @@ __kernel void particle_stage(const clast_launch launch, __global clast_control *
 {
     if (control->halt_step <= launch.step)
         return;
-    particle_step(&launch, control, get_group_id(0), get_local_id(0) PARTICLE_PASS);
+    particle_step(&launch, control, launch.first_group + (int)get_group_id(0), get_local_id(0) PARTICLE_PASS);
 }

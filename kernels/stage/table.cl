@@ -263,6 +263,50 @@ __kernel void table_sort_slots(const clast_launch launch, __global const int *re
     }
 }
 
+/* Of every block the last record of a pair that its grains take part in; -1: none. */
+__kernel void table_last_records(__global const uint *restrict slot_offset, __global const int *restrict slots, __global int *restrict last_record,
+                                 const int wall_base, const int blocks)
+{
+    int block = get_global_id(0);
+    if (block >= blocks)
+        return;
+    int last = -1;
+    for (uint s = slot_offset[block]; s < slot_offset[block + 1]; s++) {
+        int k = abs(slots[s]) - 1;
+        last = k < wall_base ? max(last, k) : last;
+    }
+    last_record[block] = last;
+}
+
+/* Of every work-group of records the latest that a grain of theirs waits for, in terms of what `wait` says of its block. */
+__kernel void table_releases(__global const int *restrict owner, __global const int *restrict other, __global const int *restrict wait,
+                             __global int *restrict release, const int pair_count, const int groups)
+{
+    int group = get_global_id(0);
+    if (group >= groups)
+        return;
+    int latest = 0;
+    for (int k = group * CLAST_BLOCK; k < min(group * CLAST_BLOCK + CLAST_BLOCK, pair_count); k++)
+        latest = max(latest, max(wait[owner[k] / CLAST_BLOCK], wait[other[k] / CLAST_BLOCK]));
+    release[group] = latest;
+}
+
+/* Slots with the places of forces for those of records: chunks of records stand where `place` says, wall records behind all chunks. */
+__kernel void table_place(__global const int *restrict slots, __global const int *restrict place, __global int *restrict placed, const int count,
+                          const int wall_base, const int chunk, const int wall_shift)
+{
+    int s = get_global_id(0);
+    if (s >= count)
+        return;
+    int entry = slots[s], k = abs(entry) - 1;
+    if (entry == 0)
+        placed[s] = 0;
+    else {
+        int at = 1 + (k < wall_base ? place[k / chunk] * chunk + k % chunk : k - wall_shift);
+        placed[s] = entry > 0 ? at : -at;
+    }
+}
+
 /* For every new record the old one of the same two partners: index + 1, negative where the pair has changed its owner, 0 where there was
  * none. `order` leads from new to old indices. */
 __kernel void table_match(__global const int *restrict owner, __global const int *restrict other, __global const int *restrict order,

@@ -90,7 +90,7 @@ static dump dump_of(simulation *sim)
 {
     static const char *const names[] = {"position", "velocity", "spin"};
     int64_t n = 3 * sim->id_count;
-    dump d = {3 * n + 32, calloc((size_t)(3 * n + 32), sizeof(double))};
+    dump d = {3 * n + 64, calloc((size_t)(3 * n + 64), sizeof(double))};
     assert_non_null(d.value);
     for (int f = 0; f < 3; f++) {
         double *rows = NULL;
@@ -108,6 +108,8 @@ static dump dump_of(simulation *sim)
                            contacts.overlap_max, (double)contacts.contacts, limit.limit_s,    limit.recommended_s, sim->time,
                            (double)sim->step,    (double)sim->count};
     memcpy(d.value + 3 * n, rest, sizeof rest);
+    d.value[3 * n + 40] = contacts.elastic;
+    MUST(observe_virial(sim, d.value + 3 * n + 41, why));
     if (sim->all.law[SLOT_LEDGER])
         MUST(ledger_read(sim, d.value + 3 * n + sizeof rest / sizeof *rest, why));
     return d;
@@ -185,6 +187,7 @@ static void test_bits(void **state)
     compare(v, &reference, (manner){.table = "batch_steps: 1"}, "a batch a step");
     compare(v, &reference, (manner){.rebuild_every = 10}, "a table every ten steps");
     compare(v, &reference, (manner){.table = "step_form: two_kernels"}, "two kernels a step");
+    compare(v, &reference, (manner){.table = "chunk_records: 64, step_form: two_kernels"}, "steps in chunks");
     if (v == MOVING_WALL || v == SHEARED) {
         compare(v, &reference, (manner){.table = "skin_m: 4.0e-5"}, "a thin skin");
         compare(v, &reference, (manner){.table = "batch_steps: 1000"}, "batches of 1000");

@@ -435,6 +435,8 @@ static const shared_place places[] = {
     PLACE(clast_launch, record_stride),
     PLACE(clast_launch, particle_count),
     PLACE(clast_launch, first_wall_group),
+    PLACE(clast_launch, first_group),
+    PLACE(clast_launch, force_shift),
     PLACE(clast_launch, step),
     PLACE(clast_launch, face_row),
     PLACE(clast_launch, mover_row),

@@ -1,0 +1,248 @@
+/* The launches of a step, in order.
+ *
+ * On a GPU, and for a bed that fits the caches, two: all records, all grains. On a CPU both stages would otherwise wait for memory: the
+ * forces of all records go out to it and come back. So the records are taken in chunks, and as soon as all records that a group of blocks takes
+ * part in have been through the pair stage, these blocks go through the particle stage, while their forces are still in the cache. No record
+ * that comes later reads these grains, so that they can move in place, and every sum is the same to the bit. A chunk whose forces have all been
+ * gathered leaves its place to a later chunk of the same step, so that forces hardly leave the cache at all. */
+#include "laws/fields.h"
+#include "simulation.h"
+
+#include <limits.h>
+#include <stdlib.h>
+
+/* Records a chunk, by measurement (docs/performance.md): a power of two. */
+#define CHUNK_RECORDS 32768
+/* Beds with fewer chunks than this go through the stages whole. */
+#define CHUNKS_LEAST 4
+/* Records of a chunk for each block in a group: 16 blocks go together in the usual chunk, so that ragged borders make no small launches. */
+#define CHUNK_PER_BLOCK 2048
+
+/* What a plan is made from; arrays of the host. */
+typedef struct planning {
+    int chunk, chunks;  /* records in one, and how many */
+    int blocks, together, groups;
+    int32_t *last;      /* of every block: its last record of a pair; then the chunk after which it may go */
+    int32_t *release;   /* of every work-group of records: the chunk after which its forces have been gathered; then the same of every chunk */
+    int32_t *place;     /* of every chunk, in chunks */
+    int places;
+} planning;
+
+static int chunk_records(const simulation *sim)
+{
+    int64_t asked = sim->scene->table.chunk_records, size = CLAST_BLOCK;
+    if (asked == 0)
+        return sim->device->info.cpu && sim->table.wall_base >= CHUNKS_LEAST * CHUNK_RECORDS ? CHUNK_RECORDS : 0;
+    while (size < asked && size < (1 << 30))
+        size *= 2;
+    return size < sim->table.wall_base ? (int)size : 0;
+}
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+static status add_piece(step_plan *plan, bool pairs, int first, int count, int shift, failure *why)
+{
+    if (count <= 0)
+        return STATUS_OK;
+    if (plan->count == plan->capacity) {
+        int capacity = 2 * plan->capacity + 16;
+        step_piece *more = realloc(plan->piece, (size_t)capacity * sizeof *more);
+        if (!more)
+            return fail(why, STATUS_ERROR, "out of memory");
+        plan->piece = more;
+        plan->capacity = capacity;
+    }
+    plan->piece[plan->count++] = (step_piece){pairs, first, count, shift};
+    return STATUS_OK;
+}
+
+static int blocks_of(const simulation *sim)
+{
+    return (int)((sim->count + CLAST_BLOCK - 1) / CLAST_BLOCK);
+}
+
+static status plan_whole(simulation *sim, failure *why)
+{
+    step_plan *plan = &sim->plan;
+    plan->chunk_records = plan->force_records = 0;
+    TRY(add_piece(plan, true, 0, sim->table.record_count / CLAST_BLOCK, 0, why));
+    return add_piece(plan, false, 0, blocks_of(sim), 0, why);
+}
+
+/* ---- after which chunk a block may go, and until when a chunk's forces are needed ---- */
+
+static status find_last_records(simulation *sim, planning *p, failure *why)
+{
+    contact_table *t = &sim->table;
+    cl_kernel kernel = launch_kernel(sim, "table_last_records");
+    TRY(launch_set(kernel, "table_last_records", why, "mmmii", t->slot_offset[t->now], t->slots[t->now], t->work[0], t->wall_base, p->blocks));
+    TRY(launch_run(sim, kernel, "table_last_records", p->blocks, CLAST_BLOCK, why));
+    return store_read(sim, t->work[0], 0, 4 * (uint64_t)p->blocks, p->last, why);
+}
+
+/* A group goes with its latest block. */
+static void wait_in_groups(planning *p)
+{
+    for (int g = 0; g < p->groups; g++) {
+        int first = g * p->together, end = smaller(first + p->together, p->blocks), last = 0;
+        for (int b = first; b < end; b++)
+            last = p->last[b] > last ? p->last[b] : last;
+        for (int b = first; b < end; b++)
+            p->last[b] = last / p->chunk;
+    }
+}
+
+static status find_releases(simulation *sim, planning *p, failure *why)
+{
+    contact_table *t = &sim->table;
+    int record_groups = t->wall_base / CLAST_BLOCK, per_chunk = p->chunk / CLAST_BLOCK;
+    cl_kernel kernel = launch_kernel(sim, "table_releases");
+    TRY(store_write(sim, t->work[0], 0, 4 * (uint64_t)p->blocks, p->last, why));
+    TRY(launch_set(kernel, "table_releases", why, "mmmmii", t->owner[t->now], t->other[t->now], t->work[0], t->match, t->pair_count, record_groups));
+    TRY(launch_run(sim, kernel, "table_releases", record_groups, CLAST_BLOCK, why));
+    TRY(store_read(sim, t->match, 0, 4 * (uint64_t)record_groups, p->release, why));
+    for (int c = 0; c < p->chunks; c++) {
+        int last = c;
+        for (int g = c * per_chunk; g < smaller((c + 1) * per_chunk, record_groups); g++)
+            last = p->release[g] > last ? p->release[g] : last;
+        p->release[c] = last;
+    }
+    return STATUS_OK;
+}
+
+/* Every chunk takes the lowest place that no earlier chunk needs any more. */
+static void choose_places(planning *p)
+{
+    p->places = 0;
+    for (int c = 0; c < p->chunks; c++) {
+        int place = 0;
+        for (int e = 0; e < c; e++)
+            if (p->release[e] >= c && p->place[e] == place) {
+                place++;
+                e = -1;
+            }
+        p->place[c] = place;
+        p->places = place + 1 > p->places ? place + 1 : p->places;
+    }
+}
+
+/* ---- the plan ---- */
+
+static status add_blocks(step_plan *plan, const planning *p, int chunk, failure *why)
+{
+    for (int b = 0; b < p->blocks; b++) {
+        int first = b;
+        while (b < p->blocks && p->last[b] == chunk)
+            b++;
+        TRY(add_piece(plan, false, first, b - first, 0, why));
+    }
+    return STATUS_OK;
+}
+
+/* Walls first: their records stand in no order that a block could wait for. */
+static status add_pieces(simulation *sim, const planning *p, int wall_shift, failure *why)
+{
+    step_plan *plan = &sim->plan;
+    int wall_group = sim->table.wall_base / CLAST_BLOCK, end = sim->table.record_count / CLAST_BLOCK, per_chunk = p->chunk / CLAST_BLOCK;
+    TRY(add_piece(plan, true, wall_group, end - wall_group, wall_shift, why));
+    for (int c = 0; c < p->chunks; c++) {
+        int first = c * per_chunk, shift = plan->force_records > 0 ? (c - p->place[c]) * p->chunk : 0;
+        TRY(add_piece(plan, true, first, smaller(per_chunk, wall_group - first), shift, why));
+        TRY(add_blocks(plan, p, c, why));
+    }
+    return STATUS_OK;
+}
+
+/* Chunks share places where the particle stage reads nothing of a record but force and torque: what else it reads stands with the record. */
+static bool may_share_places(const simulation *sim)
+{
+    if (servo_live(sim))
+        return false; /* they sum the forces on walls, record by record */
+    for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
+        for (int f = 0; sim->live.law[slot] && f < LAW_ARGUMENTS_MAX; f++) {
+            const field *field = sim->live.law[slot]->particle_fields[f];
+            if (field && field->extent == PER_RECORD && field != &field_torque)
+                return false;
+        }
+    return true;
+}
+
+/* Slots that lead to the places of the forces instead of the records. */
+static status place_slots(simulation *sim, const planning *p, int wall_shift, failure *why)
+{
+    contact_table *t = &sim->table;
+    cl_kernel kernel = launch_kernel(sim, "table_place");
+    int count = t->slot_count;
+    if (t->placed_held < t->slot_capacity) {
+        store_release(sim, &t->placed, 4 * (uint64_t)t->placed_held);
+        TRY(store_buffer(sim, &t->placed, 4 * (uint64_t)t->slot_capacity, "the contact table", why));
+        t->placed_held = t->slot_capacity;
+    }
+    TRY(store_write(sim, t->work[0], 0, 4 * (uint64_t)p->chunks, p->place, why));
+    TRY(launch_set(kernel, "table_place", why, "mmmiiii", t->slots[t->now], t->work[0], t->placed, count, t->wall_base, p->chunk, wall_shift));
+    return launch_run(sim, kernel, "table_place", count, CLAST_BLOCK, why);
+}
+
+static status plan_chunks(simulation *sim, planning *p, failure *why)
+{
+    step_plan *plan = &sim->plan;
+    TRY(find_last_records(sim, p, why));
+    wait_in_groups(p);
+    TRY(find_releases(sim, p, why));
+    choose_places(p);
+    int room = p->places * p->chunk, wall_base = sim->table.wall_base;
+    bool pays = may_share_places(sim) && 2 * (int64_t)p->places * p->chunk <= wall_base;
+    plan->chunk_records = p->chunk;
+    plan->force_records = pays ? room : 0;
+    TRY(add_pieces(sim, p, pays ? wall_base - room : 0, why));
+    return pays ? place_slots(sim, p, wall_base - room, why) : STATUS_OK;
+}
+
+status step_plan_make(simulation *sim, failure *why)
+{
+    planning p = {.chunk = chunk_records(sim), .blocks = blocks_of(sim)};
+    sim->plan.count = 0;
+    if (p.chunk == 0)
+        return plan_whole(sim, why);
+    p.chunks = (sim->table.wall_base + p.chunk - 1) / p.chunk;
+    p.together = p.chunk / CHUNK_PER_BLOCK > 1 ? p.chunk / CHUNK_PER_BLOCK : 1;
+    p.groups = (p.blocks + p.together - 1) / p.together;
+    p.last = calloc((size_t)p.blocks + 1, sizeof *p.last);
+    p.release = calloc((size_t)sim->table.wall_base / CLAST_BLOCK + 1, sizeof *p.release);
+    p.place = calloc((size_t)p.chunks, sizeof *p.place);
+    status result = p.last && p.release && p.place ? plan_chunks(sim, &p, why) : fail(why, STATUS_ERROR, "out of memory");
+    free(p.last);
+    free(p.release);
+    free(p.place);
+    return result;
+}
+
+void step_plan_free(step_plan *plan)
+{
+    free(plan->piece);
+    *plan = (step_plan){0};
+}
+
+/* ---- a step ---- */
+
+static status enqueue_piece(const simulation *sim, cl_command_queue queue, const step_piece *piece, clast_launch *launch, cl_event *event, failure *why)
+{
+    const char *name = piece->pairs ? "pair_stage" : "particle_stage";
+    cl_kernel kernel = launch_kernel(sim, name);
+    size_t local = CLAST_BLOCK, items = (size_t)piece->count * local;
+    launch->first_group = piece->first;
+    launch->force_shift = piece->force_shift;
+    TRY(launch_pass(kernel, name, launch, why));
+    TRY_CL(clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &items, &local, 0, NULL, event), name);
+    return STATUS_OK;
+}
+
+status step_plan_enqueue(const simulation *sim, cl_command_queue queue, clast_launch launch, cl_event *events, failure *why)
+{
+    for (int p = 0; p < sim->plan.count; p++)
+        TRY(enqueue_piece(sim, queue, &sim->plan.piece[p], &launch, events ? &events[p] : NULL, why));
+    return STATUS_OK;
+}
