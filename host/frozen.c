@@ -1,6 +1,7 @@
 /* Heat while nothing moves (docs/theory.md, "Heat while nothing moves"). The kernels are kernels/stage/frozen.cl. */
 #include "frozen.h"
 
+#include "frozen_parts.h"
 #include "laws/laws.h"
 
 #include <math.h>
@@ -18,11 +19,11 @@
 
 const char *frozen_method_name(heat_method method)
 {
-    static const char *const names[] = {"stabilised", "explicit"};
+    static const char *const names[] = {"stabilised", "implicit", "steady", "explicit"};
     return names[method];
 }
 
-static const scene_stage *stage_of(const simulation *sim)
+const scene_stage *frozen_stage(const simulation *sim)
 {
     return &sim->scene->stage[sim->stage];
 }
@@ -56,6 +57,7 @@ static void release_arrays(simulation *sim)
 
 void frozen_free(simulation *sim)
 {
+    frozen_solve_free(sim);
     release_arrays(sim);
 }
 
@@ -66,6 +68,7 @@ static status fit_arrays(simulation *sim, failure *why)
     if (f->link && f->link_bytes >= links)
         return STATUS_OK;
     release_arrays(sim);
+    frozen_solve_free(sim);
     f->link_bytes = links > 0 ? links : 8;
     f->grain_bytes = grains;
     TRY(store_buffer(sim, &f->link, f->link_bytes, "links of the contact network", why));
@@ -78,7 +81,7 @@ static status fit_arrays(simulation *sim, failure *why)
     return store_fill(sim, f->zero, grains, why);
 }
 
-static status run_grains(simulation *sim, const char *name, int bound, failure *why)
+status frozen_run_grains(simulation *sim, const char *name, int bound, failure *why)
 {
     TRY(launch_bind(sim, name, bound, why));
     return launch_run(sim, launch_kernel(sim, name), name, sim->count, CLAST_BLOCK, why);
@@ -95,7 +98,7 @@ static status find_given(simulation *sim, failure *why)
         return STATUS_OK;
     TRY(observe_flows(sim, why));
     TRY(launch_set(given, "heat_frozen_given", why, "Lmmm", &launch, t->other[t->now], sim->heat.walls, sim->frozen.given));
-    return run_grains(sim, "heat_frozen_given", 4, why);
+    return frozen_run_grains(sim, "heat_frozen_given", 4, why);
 }
 
 static status find_links(simulation *sim, failure *why)
@@ -108,7 +111,7 @@ static status find_links(simulation *sim, failure *why)
     TRY(launch_bind(sim, "heat_conductances", 1, why));
     TRY(launch_run(sim, records, "heat_conductances", t->record_count, CLAST_BLOCK, why));
     TRY(launch_set(links, "heat_frozen_links", why, "Lmmmm", &launch, t->owner[t->now], t->other[t->now], f->link, f->conductance));
-    return run_grains(sim, "heat_frozen_links", 5, why);
+    return frozen_run_grains(sim, "heat_frozen_links", 5, why);
 }
 
 /* One evaluation of the pairs gives all that the contacts do while nothing moves. */
@@ -120,7 +123,7 @@ static status link_contacts(simulation *sim, failure *why)
         return fail(why, STATUS_BAD_INPUT,
                     "%s: stage %s: motion is frozen, but a wall or a group of particles has a prescribed motion; stop it by `change` (motion: [] of a wall, "
                     "motion: fixed of particles)",
-                    sim->scene->path, stage_of(sim)->name);
+                    sim->scene->path, frozen_stage(sim)->name);
     TRY(simulation_pose_now(sim, why));
     TRY(fit_arrays(sim, why));
     TRY(find_given(sim, why));
@@ -143,7 +146,7 @@ static void widen(const quantity *q, double *low, double *high)
     }
 }
 
-static bool is_heated(const simulation *sim)
+bool frozen_is_heated(const simulation *sim)
 {
     const scene *s = sim->scene;
     bool heated = sim->live.law[SLOT_SOURCE] || sim->live.law[SLOT_HEAT_GENERATION];
@@ -204,7 +207,7 @@ static status keep_limit(simulation *sim, failure *why)
     if (!isnan(f->limit) && f->high <= f->hottest && !vary)
         return STATUS_OK;
     if (isnan(f->hottest) || f->high > f->hottest)
-        f->hottest = is_heated(sim) ? 1.1 * f->high : f->high;
+        f->hottest = frozen_is_heated(sim) ? 1.1 * f->high : f->high;
     return find_limit(sim, why);
 }
 
@@ -213,7 +216,7 @@ status frozen_limit(simulation *sim, double *out, failure *why)
     TRY(link_contacts(sim, why));
     TRY(find_interval(sim, why));
     if (isnan(sim->frozen.hottest))
-        sim->frozen.hottest = is_heated(sim) ? 1.1 * sim->frozen.high : sim->frozen.high;
+        sim->frozen.hottest = frozen_is_heated(sim) ? 1.1 * sim->frozen.high : sim->frozen.high;
     TRY(find_limit(sim, why));
     *out = sim->frozen.limit;
     return STATUS_OK;
@@ -286,19 +289,19 @@ static double longest_step(double limit)
 }
 
 /* What is prescribed at the times of the stages, a row each. */
-static status write_stage_rows(simulation *sim, const scheme *c, double step, failure *why)
+status frozen_write_rows(simulation *sim, const double *place, int rows, double step, failure *why)
 {
     double dt = sim->dt;
     if (!sim->heat.vary)
         return STATUS_OK;
     sim->dt = 0.0; /* groups: at these times, not a step later */
-    for (int row = 0; row <= c->stages; row++)
-        heat_fill_row(sim, row, sim->time + c->place[row] * step);
+    for (int row = 0; row < rows; row++)
+        heat_fill_row(sim, row, sim->time + place[row] * step);
     sim->dt = dt;
-    return heat_write_rows(sim, c->stages + 1, why);
+    return heat_write_rows(sim, rows, why);
 }
 
-static status set_network(simulation *sim, cl_kernel kernel, const char *name, const clast_launch *launch, cl_mem rises, failure *why)
+status frozen_set_network(simulation *sim, cl_kernel kernel, const char *name, const clast_launch *launch, cl_mem rises, failure *why)
 {
     frozen_heat *f = &sim->frozen;
     return launch_set(kernel, name, why, "Lmmmmm", launch, f->link, f->conductance, f->given, sim->heat.walls, rises);
@@ -314,7 +317,7 @@ static status run_stages(simulation *sim, const scheme *c, double step, failure 
     for (int k = 0; k < c->stages; k++) {
         cl_mem last = k > 0 ? f->rises[k % 3] : f->zero, before = k > 1 ? f->rises[(k - 1) % 3] : f->zero;
         launch.heat_row = sim->heat.vary ? k : 0;
-        TRY(set_network(sim, kernel, "heat_frozen_stage", &launch, last, why));
+        TRY(frozen_set_network(sim, kernel, "heat_frozen_stage", &launch, last, why));
         TRY(launch_set_from(kernel, "heat_frozen_stage", 6, why, sim->mixed ? "mmmmfffffii" : "mmmmdddddii", before, f->rises[(k + 1) % 3], f->start,
                             f->kept, c->mu[k], c->nu[k], c->slope[k] * step, c->start_slope[k] * step, c->weight[k] * step,
                             (cl_int)(sim->heat.vary ? k + 1 : 0), (cl_int)(k == 0)));
@@ -323,30 +326,20 @@ static status run_stages(simulation *sim, const scheme *c, double step, failure 
     return STATUS_OK;
 }
 
-typedef struct findings {
-    double error, rate, hottest, coldest;
-} findings;
-
-static status look_at_step(simulation *sim, const scheme *c, double step, findings *out, failure *why)
+status frozen_fold(simulation *sim, cl_mem rises, cl_mem error, cl_mem rates, frozen_findings *out, failure *why)
 {
-    frozen_heat *f = &sim->frozen;
     clast_launch launch = launch_values(sim);
-    cl_mem rises = f->rises[c->stages % 3];
-    cl_kernel error = launch_kernel(sim, "heat_frozen_error"), fold = launch_kernel(sim, "heat_frozen_findings");
+    cl_kernel fold = launch_kernel(sim, "heat_frozen_findings");
     int64_t chunks = (sim->count + CHUNK - 1) / CHUNK;
-    launch.heat_row = sim->heat.vary ? c->stages : 0;
-    TRY(set_network(sim, error, "heat_frozen_error", &launch, rises, why));
-    TRY(launch_set_from(error, "heat_frozen_error", 6, why, sim->mixed ? "mmmf" : "mmmd", f->start, f->error, f->rates, step));
-    TRY(run_grains(sim, "heat_frozen_error", 10, why));
     TRY(observe_partial(sim, FINDINGS * chunks, why));
-    TRY(launch_set(fold, "heat_frozen_findings", why, "Lmmmm", &launch, rises, f->error, f->rates, sim->partial));
+    TRY(launch_set(fold, "heat_frozen_findings", why, "Lmmmm", &launch, rises, error, rates, sim->partial));
     TRY(launch_bind(sim, "heat_frozen_findings", 5, why));
     TRY(launch_run(sim, fold, "heat_frozen_findings", chunks, 1, why));
     double *partial = malloc(sizeof *partial * (size_t)(FINDINGS * chunks + 1));
     if (!partial)
         return fail(why, STATUS_ERROR, "out of memory");
     status result = store_get(sim, sim->partial, FIELD_EXACT, 0, FINDINGS * chunks, partial, why);
-    *out = (findings){0.0, 0.0, -INFINITY, INFINITY};
+    *out = (frozen_findings){0.0, 0.0, -INFINITY, INFINITY};
     for (int64_t n = 0; n < chunks && result == STATUS_OK; n++) {
         out->error = fmax(out->error, partial[FINDINGS * n]);
         out->rate = fmax(out->rate, partial[FINDINGS * n + 1]);
@@ -357,55 +350,78 @@ static status look_at_step(simulation *sim, const scheme *c, double step, findin
     return result;
 }
 
-static status accept(simulation *sim, const scheme *c, double step, double until, const findings *found, failure *why)
+static status look_at_step(simulation *sim, const scheme *c, double step, frozen_findings *out, failure *why)
 {
     frozen_heat *f = &sim->frozen;
     clast_launch launch = launch_values(sim);
-    cl_kernel kernel = launch_kernel(sim, "heat_frozen_accept");
+    cl_mem rises = f->rises[c->stages % 3];
+    cl_kernel error = launch_kernel(sim, "heat_frozen_error");
     launch.heat_row = sim->heat.vary ? c->stages : 0;
-    TRY(launch_set(kernel, "heat_frozen_accept", why, "Lmm", &launch, f->rises[c->stages % 3], f->kept));
-    TRY(run_grains(sim, "heat_frozen_accept", 3, why));
-    for (int k = 0; k < c->stages; k++)
-        beams_deliver(sim, sim->time + c->place[k] * step, c->weight[k] * step);
+    TRY(frozen_set_network(sim, error, "heat_frozen_error", &launch, rises, why));
+    TRY(launch_set_from(error, "heat_frozen_error", 6, why, sim->mixed ? "mmmf" : "mmmd", f->start, f->error, f->rates, step));
+    TRY(frozen_run_grains(sim, "heat_frozen_error", 10, why));
+    return frozen_fold(sim, rises, f->error, f->rates, out, why);
+}
+
+status frozen_accept(simulation *sim, cl_mem rises, int row, bool all, failure *why)
+{
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "heat_frozen_accept");
+    launch.heat_row = sim->heat.vary ? row : 0;
+    TRY(launch_set(kernel, "heat_frozen_accept", why, "Lmmi", &launch, rises, sim->frozen.kept, (cl_int)all));
+    return frozen_run_grains(sim, "heat_frozen_accept", 4, why);
+}
+
+void frozen_count_step(simulation *sim, double step, double until, const frozen_findings *found)
+{
+    frozen_heat *f = &sim->frozen;
     sim->time = until;
     sim->step++;
     sim->stage_steps++;
     simulation_set_step(sim, step);
     f->rate = found->rate;
-    if (is_heated(sim)) {
+    if (frozen_is_heated(sim)) {
         f->high = fmax(f->high, found->hottest);
         f->low = fmin(f->low, found->coldest);
     }
+}
+
+static status accept(simulation *sim, const scheme *c, double step, double until, const frozen_findings *found, failure *why)
+{
+    TRY(frozen_accept(sim, sim->frozen.rises[c->stages % 3], c->stages, false, why));
+    for (int k = 0; k < c->stages; k++)
+        beams_deliver(sim, sim->time + c->place[k] * step, c->weight[k] * step);
+    frozen_count_step(sim, step, until, found);
     return STATUS_OK;
 }
 
 /* Error that a step may make, K. */
-static double allowed_error(const simulation *sim)
+double frozen_allowed_error(const simulation *sim)
 {
     const frozen_heat *f = &sim->frozen;
-    double range = f->high - f->low, least = is_heated(sim) ? 1e-2 * f->high : 1e-9 * f->high;
-    return stage_of(sim)->heat_tolerance * fmax(range, least);
+    double range = f->high - f->low, least = frozen_is_heated(sim) ? 1e-2 * f->high : 1e-9 * f->high;
+    return frozen_stage(sim)->heat_tolerance * fmax(range, least);
 }
 
 /* Rounding alone may carry a temperature past the ends of the interval. */
-static bool is_inside(const simulation *sim, const findings *found)
+bool frozen_is_inside(const simulation *sim, const frozen_findings *found)
 {
     const frozen_heat *f = &sim->frozen;
     double slack = (sim->mixed ? 1e-6 : 1e-12) * f->high;
-    return is_heated(sim) || (found->hottest <= f->high + slack && found->coldest >= f->low - slack);
+    return frozen_is_heated(sim) || (found->hottest <= f->high + slack && found->coldest >= f->low - slack);
 }
 
-static status give_up(const simulation *sim, double step, const findings *found, failure *why)
+status frozen_give_up(const simulation *sim, double step, const frozen_findings *found, failure *why)
 {
     return fail(why, STATUS_GUARD,
                 "%s: stage %s: heat does not advance at t = %.9g s: a step of %.3g s still makes an error of %.3g K with temperatures from %.9g to %.9g K, "
                 "allowed are %.3g K and %.9g to %.9g K; raise `tolerance`",
-                sim->scene->path, stage_of(sim)->name, sim->time, step, found->error, found->coldest, found->hottest, allowed_error(sim),
+                sim->scene->path, frozen_stage(sim)->name, sim->time, step, found->error, found->coldest, found->hottest, frozen_allowed_error(sim),
                 sim->frozen.low, sim->frozen.high);
 }
 
 /* The step ahead, so that it ends on `until` or leaves room for another like it. */
-static double fit_step(double step, double left)
+double frozen_fit_step(double step, double left)
 {
     if (step >= left)
         return left;
@@ -417,17 +433,17 @@ static status stabilised_step(simulation *sim, double until, failure *why)
 {
     frozen_heat *f = &sim->frozen;
     scheme c;
-    findings found = {0};
-    double left = until - sim->time, allowed = allowed_error(sim);
+    frozen_findings found = {0};
+    double left = until - sim->time, allowed = frozen_allowed_error(sim);
     if (isnan(f->next))
         f->next = isfinite(f->limit) ? f->limit : left;
     for (;;) {
-        double step = fit_step(fmin(f->next, longest_step(f->limit)), left);
+        double step = frozen_fit_step(fmin(f->next, longest_step(f->limit)), left);
         rkl2(&c, stages_for(step, f->limit));
-        TRY(write_stage_rows(sim, &c, step, why));
+        TRY(frozen_write_rows(sim, c.place, c.stages + 1, step, why));
         TRY(run_stages(sim, &c, step, why));
         TRY(look_at_step(sim, &c, step, &found, why));
-        bool inside = is_inside(sim, &found);
+        bool inside = frozen_is_inside(sim, &found);
         double growth = found.error > 0.0 ? 0.8 * cbrt(allowed / found.error) : 5.0;
         if (found.error <= allowed && inside) {
             double next = step * fmin(growth, 5.0);
@@ -437,20 +453,34 @@ static status stabilised_step(simulation *sim, double until, failure *why)
         f->rejected++;
         f->next = step * (inside ? fmax(fmin(growth, 0.8), 0.1) : 0.5);
         if (f->next < 1e-6 * fmin(f->limit, left))
-            return give_up(sim, step, &found, why);
+            return frozen_give_up(sim, step, &found, why);
     }
 }
 
 static status explicit_step(simulation *sim, double until, failure *why)
 {
     scheme c;
-    findings found;
-    double left = until - sim->time, step = fit_step(EULER_SHARE * sim->frozen.limit, left);
+    frozen_findings found;
+    double left = until - sim->time, step = frozen_fit_step(EULER_SHARE * sim->frozen.limit, left);
     euler(&c);
-    TRY(write_stage_rows(sim, &c, step, why));
+    TRY(frozen_write_rows(sim, c.place, c.stages + 1, step, why));
     TRY(run_stages(sim, &c, step, why));
     TRY(look_at_step(sim, &c, step, &found, why));
     return accept(sim, &c, step, step == left ? until : sim->time + step, &found, why);
+}
+
+static status take_step(simulation *sim, double until, failure *why)
+{
+    switch (frozen_stage(sim)->heat_method) {
+    case HEAT_STEADY:
+        return frozen_steady_step(sim, until, why);
+    case HEAT_IMPLICIT:
+        return frozen_implicit_step(sim, until, why);
+    case HEAT_EXPLICIT:
+        return explicit_step(sim, until, why);
+    default:
+        return stabilised_step(sim, until, why);
+    }
 }
 
 status frozen_advance(simulation *sim, double until, int64_t most, failure *why)
@@ -459,10 +489,8 @@ status frozen_advance(simulation *sim, double until, int64_t most, failure *why)
     TRY(find_interval(sim, why));
     for (int64_t n = 0; n < most && sim->time < until && sim->count > 0; n++) {
         TRY(keep_limit(sim, why));
-        if (stage_of(sim)->heat_method == HEAT_EXPLICIT)
-            TRY(explicit_step(sim, until, why));
-        else
-            TRY(stabilised_step(sim, until, why));
+        bool endless = !isfinite(until) && !isfinite(sim->frozen.limit);
+        TRY(take_step(sim, endless ? sim->time + 1.0 : until, why));
     }
     return STATUS_OK;
 }

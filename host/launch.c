@@ -39,6 +39,11 @@ static const stage_list stage_lists[] = {
     {"beam_bounds", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"beam_surface", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"beam_depth", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_residual", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_correct", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_hold", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_sinks", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_store", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_sums", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_surfaces", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
 };
@@ -206,7 +211,10 @@ status launch_open(simulation *sim, failure *why)
                                         "particle_synchronise", "step_loop", "servo_place", "servo_stage", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
                                         "heat_conductances", "heat_limit", "heat_sums", "heat_surfaces", "heat_areas",
                                         "heat_frozen_given", "heat_frozen_links", "heat_frozen_stage", "heat_frozen_error",
-                                        "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_spectrum",
+                                        "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_spectrum", "heat_frozen_residual",
+                                        "heat_frozen_correct", "heat_frozen_hold", "heat_frozen_sinks", "heat_frozen_store",
+                                        "heat_frozen_scale", "heat_frozen_cg_begin",
+                                        "heat_frozen_cg_apply", "heat_frozen_cg_update", "heat_frozen_cg_turn", "heat_frozen_cg_fold",
                                         "beam_bounds", "beam_surface", "beam_depth"};
     sim->kernel_count = 0;
     for (size_t n = 0; n < sizeof names / sizeof *names; n++) {

@@ -216,7 +216,7 @@ typedef struct group_change {
 } group_change;
 
 /* How heat advances while nothing moves. */
-typedef enum heat_method { HEAT_STABILISED, HEAT_EXPLICIT } heat_method;
+typedef enum heat_method { HEAT_STABILISED, HEAT_IMPLICIT, HEAT_STEADY, HEAT_EXPLICIT } heat_method;
 
 typedef struct scene_stage {
     char *name;

@@ -366,9 +366,10 @@ const section change_section = {.name = "stage change", .doc = "What changes at 
                                 .row = change_rows};
 
 static const parameter stage_heat_rows[] = {
-    {.key = "method", .type = PARAMETER_CHOICE, .choices = "stabilised|explicit", .later = "implicit|steady", .fallback = "stabilised",
+    {.key = "method", .type = PARAMETER_CHOICE, .choices = "stabilised|implicit|steady|explicit", .fallback = "stabilised",
      AT(scene_stage, heat_method), .doc = "how temperatures advance while nothing moves: `stabilised` takes steps of RKL2 with error control, "
-     "`explicit` steps of Euler's method at the thermal limit"},
+     "`implicit` steps of SDIRK2 with error control, `steady` goes to the steady state at once, `explicit` takes steps of Euler's method at the "
+     "thermal limit"},
     {.key = "tolerance", .type = PARAMETER_NUMBER, .low = 1e-12, .high = 0.1, .fallback = "1e-6", AT(scene_stage, heat_tolerance),
      .doc = "error of a step, as a share of the range of temperatures (initial, walls, environment and prescribed ones)"},
     {.key = "every_steps", .type = PARAMETER_LATER, .doc = "heat advanced every n-th mechanical step"},

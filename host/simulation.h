@@ -13,7 +13,7 @@
 #include <clast/shared.h>
 
 #define SIMULATION_FIELDS_MAX 32
-#define SIMULATION_KERNELS_MAX 64
+#define SIMULATION_KERNELS_MAX 96
 #define BATCH_STEPS_MAX 1024
 /* Arguments of a kernel that the descriptors name, at most. */
 #define LAUNCH_NAMES_MAX 96
@@ -98,6 +98,7 @@ typedef struct frozen_heat {
     bool linked;           /* the arrays hold the network as it stands */
     cl_mem link, conductance, given, start, zero, error, rates, kept, rises[3];
     uint64_t link_bytes, grain_bytes;
+    cl_mem fixed, residual, slope, diagonal, x, p, q, scalar; /* linear systems */
     double low, high;      /* temperatures that none leaves without being heated; NAN: not yet known */
     double next;           /* step to try, s; NAN: none yet */
     double rate;           /* largest rate of change at the last step, K/s; infinite before it */

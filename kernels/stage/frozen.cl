@@ -107,7 +107,7 @@ __kernel void heat_frozen_error(const clast_launch launch, FROZEN_DECLARE, __glo
     frozen_flows(&launch, i, &g, &h, FROZEN_PASS PARTICLE_PASS);
     bool free = i < launch.particle_count && !THERMAL_GROUP_HOLDS(&launch, i);
     real rate = frozen_rate(&g, &h), off = R(0.4) * step * (start[i] + rate) - R(0.8) * rises[i];
-    error[i] = free ? fabs(off) : R(0.0);
+    error[i] = free ? off : R(0.0);
     rates[i] = free ? fabs(rate) : R(0.0);
 }
 
@@ -123,7 +123,8 @@ __kernel void heat_frozen_findings(const clast_launch launch, __global const rea
     precise hot = precise_from(R(-1e30)), cold = hot;
     for (int i = first; i < end; i++) {
         precise t = precise_add(TEMPERATURE_PRECISE(i), precise_from(rises[i]));
-        worst = error[i] <= worst ? worst : (error[i] >= R(0.0) ? error[i] : R(1e30));
+        real off = fabs(error[i]);
+        worst = off <= worst ? worst : (off >= R(0.0) ? off : R(1e30));
         fastest = rates[i] <= fastest ? fastest : rates[i];
         hot = precise_max(hot, t);
         cold = precise_max(cold, precise_sub(precise_from(R(0.0)), t));
@@ -135,15 +136,15 @@ __kernel void heat_frozen_findings(const clast_launch launch, __global const rea
     out[3] = precise_store(cold);
 }
 
-/* Temperatures take the rises of a step; what prescribed ones took comes from a source. */
-__kernel void heat_frozen_accept(const clast_launch launch, __global const real *restrict rises, __global const real *restrict kept PARTICLE_DECLARE)
+/* Temperatures take the rises of a step; what prescribed ones took (or `all`: in a jump to the steady state) comes from a source. */
+__kernel void heat_frozen_accept(const clast_launch launch, __global const real *restrict rises, __global const real *restrict kept, const int all PARTICLE_DECLARE)
 {
     int i = get_global_id(0);
     grain g;
     grain_heat h;
     particle_grain(&launch, i, &g PARTICLE_PASS);
     HEAT_TALLY_KEPT(kept, i, &h);
-    if (THERMAL_GROUP_HOLDS(&launch, i))
+    if (all || THERMAL_GROUP_HOLDS(&launch, i))
         h.sources = temperature_capacity(&g) * rises[i] - (h.contacts + h.convection + h.radiation);
     TEMPERATURE_STORE(i, temperature_after(TEMPERATURE_PRECISE(i), rises[i]));
     HEAT_TALLY_ADD(i, &h);
@@ -169,4 +170,182 @@ __kernel void heat_frozen_spectrum(const clast_launch launch, __global const rea
         most = fmax(most, sum / temperature_capacity(&g));
     }
     partial[chunk] = precise_store(precise_from(most));
+}
+
+/* ---- linear systems: steps of implicit methods, and the steady state ---- */
+
+/* What flows into a grain at its rise less what a step stores of it, sigma m c (rise - known), W; and of the matrix of what that changes by:
+ * the part that a grain has with its own surroundings (`slope`), and the whole diagonal. A diagonal of zero: the temperature is given. With
+ * `chord` radiation's slope is at least that of the line to the surroundings, so that no step goes past them. */
+__kernel void heat_frozen_residual(const clast_launch launch, FROZEN_DECLARE, __global const real *restrict known, __global const int *restrict fixed,
+                                   __global real *restrict residual, __global real *restrict slope, __global real *restrict diagonal, const real sigma,
+                                   const int chord PARTICLE_DECLARE)
+{
+    int i = get_global_id(0);
+    grain g, like;
+    grain_heat h;
+    frozen_flows(&launch, i, &g, &h, FROZEN_PASS PARTICLE_PASS);
+    real stored = sigma * temperature_capacity(&g), links = R(0.0), straight = radiation_coefficient(&g, g.temperature);
+    like = g;
+    like.surroundings = g.temperature;
+    real tangent = radiation_coefficient(&like, g.temperature);
+    real own = stored + convection_coefficient(&g, g.temperature) + (chord && straight > tangent ? straight : tangent);
+    uint last = slot_offset[i / CLAST_BLOCK + 1];
+    for (uint s = slot_offset[i / CLAST_BLOCK] + i % CLAST_BLOCK; s < last; s += CLAST_BLOCK) {
+        own += link[s] < 0 ? conductance[s] : R(0.0);
+        links += link[s] < 0 ? R(0.0) : conductance[s];
+    }
+    bool given_here = i >= launch.particle_count || fixed[i] || THERMAL_GROUP_HOLDS(&launch, i);
+    real rest = h.contacts + h.sources + (h.convection + h.radiation) - stored * (rises[i] - known[i]);
+    residual[i] = given_here ? R(0.0) : rest;
+    slope[i] = given_here ? R(0.0) : own;
+    diagonal[i] = given_here ? R(0.0) : own + links;
+}
+
+/* Conjugate gradients with the diagonal as preconditioner (Hestenes & Stiefel 1952). Dot products: one number a work-group, folded in the order
+ * of the groups; the scalars stay on the device. */
+#define FROZEN_SUM(value, partial)                               \
+    __local real part[CLAST_BLOCK];                              \
+    part[get_local_id(0)] = (value);                             \
+    barrier(CLK_LOCAL_MEM_FENCE);                                \
+    if (get_local_id(0) == 0) {                                  \
+        real all = R(0.0);                                       \
+        for (int n = 0; n < CLAST_BLOCK; n++)                    \
+            all += part[n];                                      \
+        partial[get_group_id(0)] = all;                          \
+    }
+
+INLINE real frozen_scaled(real residual, real diagonal)
+{
+    return diagonal > R(0.0) ? residual / diagonal : R(0.0);
+}
+
+__kernel __attribute__((reqd_work_group_size(CLAST_BLOCK, 1, 1))) void heat_frozen_cg_begin(__global const real *restrict residual,
+                                                                                            __global const real *restrict diagonal,
+                                                                                            __global real *restrict x, __global real *restrict p,
+                                                                                            __global real *restrict partial)
+{
+    int i = get_global_id(0);
+    real z = frozen_scaled(residual[i], diagonal[i]);
+    x[i] = R(0.0);
+    p[i] = z;
+    FROZEN_SUM(residual[i] * z, partial)
+}
+
+__kernel __attribute__((reqd_work_group_size(CLAST_BLOCK, 1, 1))) void
+heat_frozen_cg_apply(__global const uint *restrict slot_offset, __global const int *restrict link, __global const real *restrict conductance,
+                     __global const real *restrict slope, __global const real *restrict diagonal, __global const real *restrict p,
+                     __global real *restrict q, __global real *restrict partial)
+{
+    int i = get_global_id(0);
+    real here = p[i], sum = slope[i] * here;
+    uint last = slot_offset[i / CLAST_BLOCK + 1];
+    for (uint s = slot_offset[i / CLAST_BLOCK] + i % CLAST_BLOCK; s < last; s += CLAST_BLOCK)
+        sum += link[s] < 0 ? R(0.0) : conductance[s] * (here - p[link[s] < 0 ? i : link[s]]);
+    sum = diagonal[i] > R(0.0) ? sum : R(0.0);
+    q[i] = sum;
+    FROZEN_SUM(here * sum, partial)
+}
+
+#define FROZEN_RZ 0
+#define FROZEN_ALPHA 1
+#define FROZEN_BETA 2
+#define FROZEN_RZ_START 3
+
+__kernel __attribute__((reqd_work_group_size(CLAST_BLOCK, 1, 1))) void heat_frozen_cg_update(__global const real *restrict scalar,
+                                                                                             __global const real *restrict p,
+                                                                                             __global const real *restrict q,
+                                                                                             __global const real *restrict diagonal,
+                                                                                             __global real *restrict x, __global real *restrict residual,
+                                                                                             __global real *restrict partial)
+{
+    int i = get_global_id(0);
+    real r = residual[i] - scalar[FROZEN_ALPHA] * q[i];
+    x[i] += scalar[FROZEN_ALPHA] * p[i];
+    residual[i] = r;
+    FROZEN_SUM(r * frozen_scaled(r, diagonal[i]), partial)
+}
+
+__kernel void heat_frozen_cg_turn(__global const real *restrict scalar, __global const real *restrict residual, __global const real *restrict diagonal,
+                                  __global real *restrict p)
+{
+    int i = get_global_id(0);
+    p[i] = frozen_scaled(residual[i], diagonal[i]) + scalar[FROZEN_BETA] * p[i];
+}
+
+/* One work-group. `what`: 0 the first r z, 1 p q, 2 the next r z. */
+__kernel __attribute__((reqd_work_group_size(CLAST_BLOCK, 1, 1))) void heat_frozen_cg_fold(__global const real *restrict partial, const int groups,
+                                                                                           __global real *restrict scalar, const int what)
+{
+    __local real part[CLAST_BLOCK];
+    int lane = get_local_id(0);
+    precise sum = precise_from(R(0.0));
+    for (int n = lane; n < groups; n += CLAST_BLOCK)
+        sum = precise_add(sum, precise_from(partial[n]));
+    part[lane] = rounded(sum);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (lane == 0) {
+        precise all = precise_from(R(0.0));
+        for (int n = 0; n < CLAST_BLOCK; n++)
+            all = precise_add(all, precise_from(part[n]));
+        real value = rounded(all), before = scalar[FROZEN_RZ];
+        if (what == 1) {
+            scalar[FROZEN_ALPHA] = value > R(0.0) ? before / value : R(0.0);
+        } else {
+            scalar[FROZEN_BETA] = what == 2 && before > R(0.0) ? value / before : R(0.0);
+            scalar[FROZEN_RZ] = value;
+            scalar[FROZEN_RZ_START] = what == 0 ? value : scalar[FROZEN_RZ_START];
+        }
+    }
+}
+
+/* A correction, within the interval given. */
+__kernel void heat_frozen_correct(const clast_launch launch, __global const real *restrict correction, __global real *restrict rises, const real low,
+                                  const real high PARTICLE_DECLARE)
+{
+    int i = get_global_id(0);
+    precise here = TEMPERATURE_PRECISE(i);
+    real least = rounded(precise_sub(precise_from(low), here)), most = rounded(precise_sub(precise_from(high), here)), rise = rises[i] + correction[i];
+    rise = rise < least ? least : (rise > most ? most : rise);
+    rises[i] = correction[i] != R(0.0) ? rise : rises[i];
+}
+
+/* Rises of prescribed grains in the row of the tables; others stay. */
+__kernel void heat_frozen_hold(const clast_launch launch, __global real *restrict rises PARTICLE_DECLARE)
+{
+    int i = get_global_id(0);
+    rises[i] = frozen_held(&launch, i, rises[i] PARTICLE_PASS);
+}
+
+/* For the host's search of clusters without a sink: what draws a grain to fixed temperatures (W/K), its capacity (J/K) and what heats it (W). */
+__kernel void heat_frozen_sinks(const clast_launch launch, FROZEN_DECLARE, __global real *restrict sink, __global real *restrict capacity,
+                                __global real *restrict source PARTICLE_DECLARE)
+{
+    int i = get_global_id(0);
+    grain g;
+    grain_heat h;
+    frozen_flows(&launch, i, &g, &h, FROZEN_PASS PARTICLE_PASS);
+    real sum = convection_coefficient(&g, g.temperature) + radiation_coefficient(&g, g.temperature);
+    uint last = slot_offset[i / CLAST_BLOCK + 1];
+    for (uint s = slot_offset[i / CLAST_BLOCK] + i % CLAST_BLOCK; s < last; s += CLAST_BLOCK)
+        sum += link[s] < 0 ? conductance[s] : R(0.0);
+    sink[i] = THERMAL_GROUP_HOLDS(&launch, i) ? R(1.0) : sum;
+    capacity[i] = temperature_capacity(&g);
+    source[i] = h.sources + given[i];
+}
+
+/* What a rise of `error` stores at sigma, W; 0 where the temperature is given. */
+__kernel void heat_frozen_store(const clast_launch launch, __global const real *restrict error, __global const real *restrict diagonal,
+                                __global real *restrict residual, const real sigma PARTICLE_DECLARE)
+{
+    int i = get_global_id(0);
+    grain g;
+    particle_grain(&launch, i, &g PARTICLE_PASS);
+    residual[i] = diagonal[i] > R(0.0) ? sigma * temperature_capacity(&g) * error[i] : R(0.0);
+}
+
+__kernel void heat_frozen_scale(__global const real *restrict from, __global real *restrict to, const real factor)
+{
+    int i = get_global_id(0);
+    to[i] = factor * from[i];
 }

@@ -244,13 +244,14 @@ static void test_restart(void **state)
 static void test_bounds(void **state)
 {
     (void)state;
-    for (int euler = 0; euler < 2; euler++) {
+    static const char *const methods[] = {"stabilised", "explicit", "implicit"};
+    for (int m = 0; m < 3; m++) {
         text t = {0};
         put_laws(&t, 50.0, 1.0, 0.0, "500");
         put(&t, "particles:\n  - {name: large, material: m, generator: list, temperature_k: 300, items: [{position_m: [0, 0, 0], radius_m: 3.0e-3}, "
                 "{position_m: [0, 0.00599, 0], radius_m: 3.0e-3}]}\n"
                 "  - {name: tiny, material: m, generator: list, temperature_k: 3000, items: [{position_m: [0.003019, 0, 0], radius_m: 2.0e-5}]}\n");
-        put(&t, "stages: [{motion: frozen, until: {time_s: 20}, heat: {method: %s, tolerance: 1.0e-3}}]\n", euler ? "explicit" : "stabilised");
+        put(&t, "stages: [{motion: frozen, until: {time_s: 20}, heat: {method: %s, tolerance: 1.0e-3}}]\n", methods[m]);
         physics_case c = case_open(&t);
         for (int step = 0; step < 300 && c.sim->time < 20.0; step++) {
             MUST(frozen_advance(c.sim, 20.0, 1, why));
@@ -259,7 +260,7 @@ static void test_bounds(void **state)
             BETWEEN(sums.lowest, 300.0 - slack, 3000.0);
             BETWEEN(sums.highest, 300.0, 3000.0 + slack);
         }
-        assert_true(euler || c.sim->time == 20.0);
+        assert_true(m == 1 || c.sim->time == 20.0);
         case_close(&c);
     }
 }
@@ -277,6 +278,132 @@ static void test_front(void **state)
     }
     assert_true(c.sim->dt > 10.0 * c.sim->frozen.limit);
     case_close(&c);
+}
+
+/* ---- methods that solve ---- */
+
+/* The steady state at once: conductances in series; and a long stage comes to the same temperatures. */
+static void test_steady_row(void **state)
+{
+    (void)state;
+    physics_case c = row_between(ROW, "1000", "until: {time_s: 1}, heat: {method: steady}"), d = row_between(ROW, "1000", "until: {time_s: 4000}");
+    double flow = row_conductance() * (HOT - COLD) / (ROW + 1), within = mixed(&c) ? 1e-4 : 1e-11;
+    advance(&c, 1.0);
+    advance(&d, 4000.0);
+    RELATIVE(flow_of(&c, 0, -1), flow, within);
+    RELATIVE(flow_of(&c, ROW - 1, -2), -flow, within);
+    for (int k = 0; k < ROW; k++) {
+        RELATIVE(temperature_of(&c, k), HOT - (HOT - COLD) * (k + 1) / (ROW + 1), mixed(&c) ? 1e-6 : 1e-12);
+        RELATIVE(temperature_of(&d, k), temperature_of(&c, k), mixed(&c) ? 1e-5 : 1e-6);
+    }
+    case_close(&c);
+    case_close(&d);
+}
+
+/* With everything on: the long transient comes to the steady state to 1e-6; tables are held at their ends by then. */
+static void test_steady_everything(void **state)
+{
+    (void)state;
+    physics_case c = everything_open("[{motion: frozen, until: {time_s: 2000}, heat: {method: steady}}]");
+    physics_case d = everything_open("[{motion: frozen, until: {time_s: 2000}, heat: {tolerance: 1.0e-7}}]");
+    heat_sums before = case_heat(&c);
+    advance(&c, 2000.0);
+    advance(&d, 2000.0);
+    for (int k = 0; k < GRAINS; k++)
+        RELATIVE(temperature_of(&c, k), temperature_of(&d, k), mixed(&c) ? 1e-4 : 1e-6);
+    heat_sums after = case_heat(&c);
+    RELATIVE(after.tally[CLAST_TALLY_SOURCES], after.content - before.content, mixed(&c) ? 1e-4 : 1e-9);
+    case_close(&c);
+    case_close(&d);
+}
+
+static const char two_clusters[] = "particles:\n"
+                                   "  - {name: a, material: m, generator: list, temperature_k: 500, items: [{position_m: [0, 0, 0], radius_m: 3.0e-3}]}\n"
+                                   "  - {name: b, material: n, generator: list, temperature_k: 300, items: [{position_m: [0.00597, 0, 0], radius_m: 3.0e-3}]}\n"
+                                   "  - {name: c, material: n, generator: list, temperature_k: 700, items: [{position_m: [1, 0, 0], radius_m: 2.0e-3}]}\n";
+
+/* Clusters without a sink end at their mean by heat capacity; one that is heated has no steady state. */
+static void test_clusters(void **state)
+{
+    (void)state;
+    for (int heated = 0; heated < 2; heated++) {
+        text t = {0};
+        failure refused;
+        put_laws(&t, 0.0, 0.0, heated ? 1e3 : 0.0, "300");
+        put(&t, "%sstages: [{motion: frozen, until: {time_s: 1}, heat: {method: steady}}]\n", two_clusters);
+        physics_case c = case_open(&t);
+        double a = row_capacity(), b = sphere_mass(8000, 3e-3) * 400.0;
+        if (heated) {
+            assert_int_equal(frozen_advance(c.sim, 1.0, 1, &refused), STATUS_BAD_INPUT);
+            assert_non_null(strstr(refused.text, "there is no steady state: a cluster of particles gains"));
+        } else {
+            advance(&c, 1.0);
+            for (int k = 0; k < 2; k++)
+                RELATIVE(temperature_of(&c, k), (a * 500.0 + b * 300.0) / (a + b), mixed(&c) ? 1e-6 : 1e-12);
+            NEAR(temperature_of(&c, 2), 700.0, 0.0);
+        }
+        case_close(&c);
+    }
+}
+
+/* Into the heat of 3000 K, from 300 K: Newton's method neither overshoots nor stalls. */
+static void test_steady_radiation(void **state)
+{
+    (void)state;
+    text t = {0};
+    put_laws(&t, 0.0, 1.0, 0.0, "3000");
+    put(&t, "%swalls: [{name: w, shape: plane, point_m: [-0.00298, 0, 0], normal: [1, 0, 0], temperature_k: 300}]\n"
+            "stages: [{motion: frozen, until: {time_s: 1}, heat: {method: steady}}]\n", two_clusters);
+    physics_case c = case_open(&t);
+    advance(&c, 1.0);
+    double ta = temperature_of(&c, 0), tb = temperature_of(&c, 1), area = 4.0 * PI * 9e-6;
+    double into_b = STEFAN * area * (pow(3000.0, 4) - pow(tb, 4)), into_a = STEFAN * area * (pow(3000.0, 4) - pow(ta, 4));
+    RELATIVE(flow_of(&c, 0, 1), into_b, mixed(&c) ? 1e-3 : 1e-9);
+    RELATIVE(-flow_of(&c, 0, -1), into_a + into_b, mixed(&c) ? 1e-3 : 1e-9);
+    NEAR(temperature_of(&c, 2), 3000.0, mixed(&c) ? 1e-2 : 1e-8);
+    case_close(&c);
+}
+
+/* Implicit steps: the order of the tolerance, all heat accounted for, and the stabilised method's answer. */
+static void test_implicit(void **state)
+{
+    (void)state;
+    const char *const stages[] = {"until: {time_s: 9}, heat: {method: implicit, tolerance: 1.0e-4}",
+                                  "until: {time_s: 9}, heat: {method: implicit, tolerance: 1.0e-6}"};
+    double tau = row_capacity() / (2.0 * row_conductance()), error[2], middle = 0.5 * (HOT + COLD);
+    for (int k = 0; k < 2; k++) {
+        physics_case c = row_between(1, "1000", stages[k]);
+        advance(&c, tau);
+        error[k] = fabs(temperature_of(&c, 0) - (middle + (COLD - middle) * exp(-1.0)));
+        bool coarse = mixed(&c);
+        case_close(&c);
+        if (coarse)
+            return;
+    }
+    assert_true(error[0] < 100.0 * 1e-4 * (HOT - COLD) && error[1] < 100.0 * 1e-6 * (HOT - COLD));
+    BETWEEN(log(error[0] / error[1]) / log(100.0), 0.5, 0.85);
+}
+
+static void test_implicit_everything(void **state)
+{
+    (void)state;
+    physics_case c = everything_open("[{motion: frozen, until: {time_s: 7}, heat: {method: implicit, tolerance: 1.0e-7}}]");
+    physics_case d = everything_open("[{motion: frozen, until: {time_s: 7}, heat: {tolerance: 1.0e-7}}]");
+    heat_sums before = case_heat(&c);
+    advance(&c, 7.0);
+    advance(&d, 7.0);
+    heat_sums after = case_heat(&c), other = case_heat(&d);
+    double in = 0.0, most = 0.0;
+    for (int k = 0; k < GRAINS; k++)
+        RELATIVE(temperature_of(&c, k), temperature_of(&d, k), mixed(&c) ? 1e-4 : 1e-5);
+    for (int q = 0; q < CLAST_TALLIES; q++) {
+        in += after.tally[q];
+        most = fmax(most, fabs(after.tally[q]));
+        RELATIVE(after.tally[q], other.tally[q], mixed(&c) ? 1e-3 : 1e-4);
+    }
+    NEAR(after.content - before.content, in, (mixed(&c) ? 1e-4 : 1e-9) * most);
+    case_close(&c);
+    case_close(&d);
 }
 
 /* ---- ends and refusals ---- */
@@ -313,6 +440,8 @@ int main(void)
         cmocka_unit_test(test_between_walls), cmocka_unit_test(test_explicit), cmocka_unit_test(test_row),     cmocka_unit_test(test_ramp),
         cmocka_unit_test(test_radiation),     cmocka_unit_test(test_balance),  cmocka_unit_test(test_coupled), cmocka_unit_test(test_restart),
         cmocka_unit_test(test_bounds),        cmocka_unit_test(test_front),    cmocka_unit_test(test_rate),    cmocka_unit_test(test_moving_wall),
+        cmocka_unit_test(test_steady_row),    cmocka_unit_test(test_steady_everything), cmocka_unit_test(test_clusters),
+        cmocka_unit_test(test_steady_radiation), cmocka_unit_test(test_implicit), cmocka_unit_test(test_implicit_everything),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,39 @@
+/* What the methods for stages in which nothing moves share (frozen.c, frozen_solve.c). */
+#ifndef CLAST_HOST_FROZEN_PARTS_H
+#define CLAST_HOST_FROZEN_PARTS_H
+#include "frozen.h"
+
+/* What a step has come to. */
+typedef struct frozen_findings {
+    double error, rate, hottest, coldest;
+} frozen_findings;
+
+const scene_stage *frozen_stage(const simulation *sim);
+/* Something other than differences of temperature brings heat. */
+bool frozen_is_heated(const simulation *sim);
+/* Error that a step may make, K. */
+double frozen_allowed_error(const simulation *sim);
+/* Inside the interval of temperatures, but for rounding; always where the bed is heated. */
+bool frozen_is_inside(const simulation *sim, const frozen_findings *found);
+/* The step ahead, so that it ends at what is left or leaves room for another like it. */
+double frozen_fit_step(double step, double left);
+status frozen_give_up(const simulation *sim, double step, const frozen_findings *found, failure *why);
+/* The first six arguments of kernels that look at flows. */
+status frozen_set_network(simulation *sim, cl_kernel kernel, const char *name, const clast_launch *launch, cl_mem rises, failure *why);
+/* Binds the fields of grains behind `bound` arguments, and runs over all grains. */
+status frozen_run_grains(simulation *sim, const char *name, int bound, failure *why);
+/* The rows that a step's stages stand in, at so many places of it. */
+status frozen_write_rows(simulation *sim, const double *place, int rows, double step, failure *why);
+/* Largest |error| and |rate|, and the ends of the temperatures that the rises lead to. */
+status frozen_fold(simulation *sim, cl_mem rises, cl_mem error, cl_mem rates, frozen_findings *out, failure *why);
+/* Takes the rises; `row` of the tables holds at their end. `all`: what they brought is no flow, and counts as given by a source. */
+status frozen_accept(simulation *sim, cl_mem rises, int row, bool all, failure *why);
+/* Time has gone on by one step. */
+void frozen_count_step(simulation *sim, double step, double until, const frozen_findings *found);
+
+/* frozen_solve.c */
+status frozen_steady_step(simulation *sim, double until, failure *why);
+status frozen_implicit_step(simulation *sim, double until, failure *why);
+void frozen_solve_free(simulation *sim);
+
+#endif

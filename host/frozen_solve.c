@@ -1,0 +1,383 @@
+/* Methods that solve for temperatures (docs/theory.md, "Heat while nothing moves"): steps of SDIRK2, and the steady state. Newton's method
+ * outside, conjugate gradients on the device inside. */
+#include "frozen_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ITERATIONS_MAX 20000
+/* Iterations between looks of the host. */
+#define LOOK_EVERY 25
+#define NEWTON_MAX 60
+/* Radiation's slope is a chord in so many iterations, until temperatures are near. */
+#define CHORDS 4
+/* Alexander 1977: both stages with this on the diagonal; stable for any step, and damping. */
+#define GAMMA (1.0 - M_SQRT1_2)
+
+static double reduction(const simulation *sim)
+{
+    return sim->mixed ? 1e-6 : 1e-12;
+}
+
+void frozen_solve_free(simulation *sim)
+{
+    frozen_heat *f = &sim->frozen;
+    cl_mem *const arrays[] = {&f->fixed, &f->residual, &f->slope, &f->diagonal, &f->x, &f->p, &f->q};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        store_release(sim, arrays[k], f->grain_bytes);
+    store_release(sim, &f->scalar, 64);
+}
+
+static status fit_arrays(simulation *sim, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    if (f->scalar)
+        return STATUS_OK;
+    cl_mem *const arrays[] = {&f->fixed, &f->residual, &f->slope, &f->diagonal, &f->x, &f->p, &f->q};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        TRY(store_buffer(sim, arrays[k], f->grain_bytes, "a linear system of temperatures", why));
+    TRY(store_buffer(sim, &f->scalar, 64, "scalars of a linear system", why));
+    return store_fill(sim, f->fixed, f->grain_bytes, why);
+}
+
+/* ---- conjugate gradients ---- */
+
+static status run_blocks(simulation *sim, const char *name, failure *why)
+{
+    return launch_run(sim, launch_kernel(sim, name), name, sim->count, CLAST_BLOCK, why);
+}
+
+static status fold(simulation *sim, int what, failure *why)
+{
+    cl_kernel kernel = launch_kernel(sim, "heat_frozen_cg_fold");
+    cl_int groups = (cl_int)((sim->count + CLAST_BLOCK - 1) / CLAST_BLOCK);
+    TRY(launch_set(kernel, "heat_frozen_cg_fold", why, "mimi", sim->partial, groups, sim->frozen.scalar, (cl_int)what));
+    return launch_run(sim, kernel, "heat_frozen_cg_fold", CLAST_BLOCK, CLAST_BLOCK, why);
+}
+
+static status bind_iteration(simulation *sim, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    contact_table *t = &sim->table;
+    TRY(launch_set(launch_kernel(sim, "heat_frozen_cg_apply"), "heat_frozen_cg_apply", why, "mmmmmmmm", t->slot_offset[t->now], f->link, f->conductance,
+                   f->slope, f->diagonal, f->p, f->q, sim->partial));
+    TRY(launch_set(launch_kernel(sim, "heat_frozen_cg_update"), "heat_frozen_cg_update", why, "mmmmmmm", f->scalar, f->p, f->q, f->diagonal, f->x,
+                   f->residual, sim->partial));
+    return launch_set(launch_kernel(sim, "heat_frozen_cg_turn"), "heat_frozen_cg_turn", why, "mmmm", f->scalar, f->residual, f->diagonal, f->p);
+}
+
+static status iterate(simulation *sim, failure *why)
+{
+    TRY(run_blocks(sim, "heat_frozen_cg_apply", why));
+    TRY(fold(sim, 1, why));
+    TRY(run_blocks(sim, "heat_frozen_cg_update", why));
+    TRY(fold(sim, 2, why));
+    return run_blocks(sim, "heat_frozen_cg_turn", why);
+}
+
+/* x of the system with the residual as its right-hand side, until the residual has fallen by `to`. */
+static status solve(simulation *sim, double to, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    cl_kernel begin = launch_kernel(sim, "heat_frozen_cg_begin");
+    TRY(observe_partial(sim, (sim->count + CLAST_BLOCK - 1) / CLAST_BLOCK, why));
+    TRY(launch_set(begin, "heat_frozen_cg_begin", why, "mmmmm", f->residual, f->diagonal, f->x, f->p, sim->partial));
+    TRY(run_blocks(sim, "heat_frozen_cg_begin", why));
+    TRY(fold(sim, 0, why));
+    TRY(bind_iteration(sim, why));
+    for (int n = 0; n < ITERATIONS_MAX; n += LOOK_EVERY) {
+        double scalar[4];
+        for (int k = 0; k < LOOK_EVERY; k++)
+            TRY(iterate(sim, why));
+        TRY(store_get(sim, f->scalar, FIELD_REAL, 0, 4, scalar, why));
+        if (!(scalar[0] > to * to * scalar[3])) /* r z now and at first */
+            return STATUS_OK;
+    }
+    return fail(why, STATUS_ERROR, "%s: stage %s: conjugate gradients do not converge in %d iterations", sim->scene->path, frozen_stage(sim)->name,
+                ITERATIONS_MAX);
+}
+
+/* ---- Newton ---- */
+
+static status find_residual(simulation *sim, cl_mem rises, cl_mem known, double sigma, int row, bool chord, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "heat_frozen_residual");
+    launch.heat_row = sim->heat.vary ? row : 0;
+    TRY(frozen_set_network(sim, kernel, "heat_frozen_residual", &launch, rises, why));
+    TRY(launch_set_from(kernel, "heat_frozen_residual", 6, why, sim->mixed ? "mmmmmfi" : "mmmmmdi", known, f->fixed, f->residual, f->slope, f->diagonal,
+                        sigma, (cl_int)chord));
+    return frozen_run_grains(sim, "heat_frozen_residual", 13, why);
+}
+
+/* Temperatures stay in the interval of all around them; where something heats them, positive. */
+static status correct(simulation *sim, cl_mem rises, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "heat_frozen_correct");
+    bool heated = frozen_is_heated(sim);
+    TRY(launch_set(kernel, "heat_frozen_correct", why, sim->mixed ? "Lmmff" : "Lmmdd", &launch, f->x, rises, heated ? 0.1 * f->low : f->low,
+                   heated ? 1e6 * f->high : f->high));
+    return frozen_run_grains(sim, "heat_frozen_correct", 5, why);
+}
+
+/* Rises at which what flows in is what sigma stores of them beyond the known ones. *converged: the last correction was small enough. */
+static status newton(simulation *sim, cl_mem rises, cl_mem known, double sigma, int row, bool *converged, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    bool linear = !sim->live.law[SLOT_RADIATION];
+    double least = (sim->mixed ? 2e-7 : 1e-12) * f->high;
+    *converged = false;
+    for (int n = 0; n < NEWTON_MAX && !*converged; n++) {
+        frozen_findings found;
+        TRY(find_residual(sim, rises, known, sigma, row, sigma == 0.0 && n < CHORDS, why));
+        TRY(solve(sim, reduction(sim), why));
+        TRY(correct(sim, rises, why));
+        TRY(frozen_fold(sim, rises, f->x, f->zero, &found, why));
+        if (!(found.error < 1e29))
+            return STATUS_OK;
+        *converged = found.error <= least || (linear && n > 0);
+    }
+    return STATUS_OK;
+}
+
+static status hold(simulation *sim, cl_mem rises, int row, failure *why)
+{
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "heat_frozen_hold");
+    launch.heat_row = sim->heat.vary ? row : 0;
+    TRY(launch_set(kernel, "heat_frozen_hold", why, "Lm", &launch, rises));
+    return frozen_run_grains(sim, "heat_frozen_hold", 2, why);
+}
+
+/* ---- clusters without a sink ---- */
+
+typedef struct clusters {
+    int64_t *root, links;
+    int32_t *link, *fixed;
+    uint32_t *slot_offset;
+    double *conductance, *sink, *capacity, *source, *temperature, *sums; /* sums: of each root: sink, capacity, content, source */
+} clusters;
+
+static void clusters_free(clusters *c)
+{
+    void *const all[] = {c->root, c->link, c->fixed, c->slot_offset, c->conductance, c->sink, c->capacity, c->source, c->temperature, c->sums};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+        free(all[k]);
+}
+
+static int64_t root_of(clusters *c, int64_t i)
+{
+    while (c->root[i] != i)
+        i = c->root[i] = c->root[c->root[i]];
+    return i;
+}
+
+static status read_clusters(simulation *sim, clusters *c, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    contact_table *t = &sim->table;
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "heat_frozen_sinks");
+    size_t n = (size_t)sim->stride, blocks = n / CLAST_BLOCK;
+    TRY(frozen_set_network(sim, kernel, "heat_frozen_sinks", &launch, f->zero, why));
+    TRY(launch_set_from(kernel, "heat_frozen_sinks", 6, why, "mmm", f->residual, f->slope, f->diagonal));
+    TRY(frozen_run_grains(sim, "heat_frozen_sinks", 9, why));
+    c->slot_offset = malloc(sizeof *c->slot_offset * (blocks + 1));
+    if (!c->slot_offset)
+        return fail(why, STATUS_ERROR, "out of memory");
+    TRY(store_read(sim, t->slot_offset[t->now], 0, sizeof *c->slot_offset * (blocks + 1), c->slot_offset, why));
+    c->links = c->slot_offset[blocks];
+    c->root = malloc(sizeof *c->root * n);
+    c->fixed = calloc(n, sizeof *c->fixed);
+    c->link = malloc(sizeof *c->link * (size_t)(c->links + 1));
+    c->conductance = malloc(sizeof *c->conductance * (size_t)(c->links + 1));
+    double **const grains[] = {&c->sink, &c->capacity, &c->source, &c->temperature};
+    for (int k = 0; k < 4; k++)
+        *grains[k] = malloc(sizeof(double) * n);
+    c->sums = calloc(4 * n, sizeof *c->sums);
+    if (!c->root || !c->fixed || !c->link || !c->conductance || !c->sink || !c->capacity || !c->source || !c->temperature || !c->sums)
+        return fail(why, STATUS_ERROR, "out of memory");
+    TRY(store_read(sim, f->link, 0, sizeof *c->link * (size_t)c->links, c->link, why));
+    TRY(store_get(sim, f->conductance, FIELD_REAL, 0, c->links, c->conductance, why));
+    TRY(store_get(sim, f->residual, FIELD_REAL, 0, sim->count, c->sink, why));
+    TRY(store_get(sim, f->slope, FIELD_REAL, 0, sim->count, c->capacity, why));
+    TRY(store_get(sim, f->diagonal, FIELD_REAL, 0, sim->count, c->source, why));
+    return store_get_grains(sim, store_find(sim, "temperature"), sim->count, c->temperature, why);
+}
+
+static void join_clusters(const simulation *sim, clusters *c)
+{
+    for (int64_t i = 0; i < sim->count; i++)
+        c->root[i] = i;
+    for (int64_t i = 0; i < sim->count; i++)
+        for (uint32_t s = c->slot_offset[i / CLAST_BLOCK] + (uint32_t)(i % CLAST_BLOCK); s < c->slot_offset[i / CLAST_BLOCK + 1]; s += CLAST_BLOCK)
+            if (c->link[s] >= 0 && c->conductance[s] > 0.0) {
+                int64_t a = root_of(c, i), b = root_of(c, c->link[s]);
+                c->root[a > b ? a : b] = a > b ? b : a;
+            }
+    for (int64_t i = 0; i < sim->count; i++) {
+        double *sum = c->sums + 4 * root_of(c, i);
+        sum[0] += c->sink[i];
+        sum[1] += c->capacity[i];
+        sum[2] += c->capacity[i] * c->temperature[i];
+        sum[3] += c->source[i];
+    }
+}
+
+/* Rises to the mean by heat capacity of clusters that have no sink, which are then fixed; one that is heated has no steady state. */
+static status sort_out(simulation *sim, clusters *c, cl_mem rises, failure *why)
+{
+    double *rise = calloc((size_t)sim->stride, sizeof *rise);
+    status result = rise ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
+    for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++) {
+        const double *sum = c->sums + 4 * root_of(c, i);
+        if (sum[0] > 0.0)
+            continue;
+        c->fixed[i] = 1;
+        rise[i] = sum[2] / sum[1] - c->temperature[i];
+        if (sum[3] != 0.0)
+            result = fail(why, STATUS_BAD_INPUT,
+                          "%s: stage %s: there is no steady state: a cluster of particles gains %.4g W and touches no wall with a temperature, nor does "
+                          "anything else take heat from it; give it a sink, or heat it for a time by `method: stabilised`",
+                          sim->scene->path, frozen_stage(sim)->name, sum[3]);
+    }
+    if (result == STATUS_OK)
+        result = store_put(sim, rises, FIELD_REAL, 0, sim->count, rise, why);
+    if (result == STATUS_OK)
+        result = store_write(sim, sim->frozen.fixed, 0, sizeof *c->fixed * (uint64_t)sim->count, c->fixed, why);
+    free(rise);
+    return result;
+}
+
+static status settle_clusters(simulation *sim, cl_mem rises, failure *why)
+{
+    clusters c = {0};
+    status result = read_clusters(sim, &c, why);
+    if (result == STATUS_OK) {
+        join_clusters(sim, &c);
+        result = sort_out(sim, &c, rises, why);
+    }
+    clusters_free(&c);
+    return result;
+}
+
+/* ---- the steady state ---- */
+
+/* The steady state for what is prescribed at the end; without `time_s` at this moment, and no time passes. In mixed precision temperatures are
+ * rebased and solved for again: floats hold the last corrections, not the whole rise. */
+status frozen_steady_step(simulation *sim, double until, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    bool timeless = isnan(frozen_stage(sim)->until_time_s), converged = false;
+    double end = timeless ? sim->time : until;
+    const double place[1] = {1.0};
+    cl_mem rises = f->rises[0];
+    TRY(fit_arrays(sim, why));
+    TRY(frozen_write_rows(sim, place, 1, end - sim->time, why));
+    for (int pass = 0; pass < (sim->mixed ? 3 : 1); pass++) {
+        TRY(store_fill(sim, rises, f->grain_bytes, why));
+        TRY(settle_clusters(sim, rises, why));
+        TRY(hold(sim, rises, 0, why));
+        TRY(newton(sim, rises, f->zero, 0.0, 0, &converged, why));
+        if (sim->live.law[SLOT_HEAT_TALLY])
+            TRY(store_fill(sim, f->kept, 6 * f->grain_bytes, why));
+        TRY(frozen_accept(sim, rises, 0, true, why));
+    }
+    if (!converged && !sim->mixed)
+        return fail(why, STATUS_ERROR, "%s: stage %s: no steady state was found in %d iterations", sim->scene->path, frozen_stage(sim)->name, NEWTON_MAX);
+    const frozen_findings none = {0.0, 0.0, f->high, f->low};
+    frozen_count_step(sim, end > sim->time ? end - sim->time : sim->dt, end, &none);
+    return STATUS_OK;
+}
+
+/* ---- implicit steps ---- */
+
+/* Evaluates the flows at the rises: for the tally with their weight, and, first, the rates at the start. */
+static status weigh_flows(simulation *sim, cl_mem rises, int row, double weight, bool first, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    clast_launch launch = launch_values(sim);
+    cl_kernel kernel = launch_kernel(sim, "heat_frozen_stage");
+    launch.heat_row = sim->heat.vary ? row : 0;
+    TRY(frozen_set_network(sim, kernel, "heat_frozen_stage", &launch, rises, why));
+    TRY(launch_set_from(kernel, "heat_frozen_stage", 6, why, sim->mixed ? "mmmmfffffii" : "mmmmdddddii", f->zero, f->q, f->start, f->kept, 0.0, 0.0, 0.0,
+                        0.0, weight, (cl_int)(sim->heat.vary ? row : 0), (cl_int)first));
+    return frozen_run_grains(sim, "heat_frozen_stage", 17, why);
+}
+
+/* The error against the trapezoidal rule, and what a step damps taken out of it: (1 - gamma dt J) e = defect. */
+static status find_error(simulation *sim, cl_mem rises, double step, frozen_findings *out, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    clast_launch launch = launch_values(sim);
+    cl_kernel error = launch_kernel(sim, "heat_frozen_error"), capacity = launch_kernel(sim, "heat_frozen_store");
+    launch.heat_row = sim->heat.vary ? 2 : 0;
+    TRY(frozen_set_network(sim, error, "heat_frozen_error", &launch, rises, why));
+    TRY(launch_set_from(error, "heat_frozen_error", 6, why, sim->mixed ? "mmmf" : "mmmd", f->start, f->error, f->rates, step));
+    TRY(frozen_run_grains(sim, "heat_frozen_error", 10, why));
+    TRY(find_residual(sim, rises, f->zero, 1.0 / (GAMMA * step), 2, false, why));
+    TRY(launch_set(capacity, "heat_frozen_store", why, sim->mixed ? "Lmmmf" : "Lmmmd", &launch, f->error, f->diagonal, f->residual, 1.0 / (GAMMA * step)));
+    TRY(frozen_run_grains(sim, "heat_frozen_store", 5, why));
+    TRY(solve(sim, 1e-3, why));
+    return frozen_fold(sim, rises, f->x, f->rates, out, why);
+}
+
+/* The two stages of a step; the rises at its end stand in rises[2]. */
+static status run_stages(simulation *sim, double step, bool *converged, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    double sigma = 1.0 / (GAMMA * step);
+    cl_kernel known = launch_kernel(sim, "heat_frozen_scale");
+    cl_mem first = f->rises[1], second = f->rises[2];
+    TRY(weigh_flows(sim, f->zero, 0, 0.0, true, why));
+    TRY(store_fill(sim, first, f->grain_bytes, why));
+    TRY(hold(sim, first, 1, why));
+    TRY(newton(sim, first, f->zero, sigma, 1, converged, why));
+    if (!*converged)
+        return STATUS_OK;
+    TRY(weigh_flows(sim, first, 1, (1.0 - GAMMA) * step, false, why));
+    TRY(launch_set(known, "heat_frozen_scale", why, sim->mixed ? "mmf" : "mmd", first, f->rises[0], (1.0 - GAMMA) / GAMMA));
+    TRY(launch_run(sim, known, "heat_frozen_scale", sim->count, CLAST_BLOCK, why));
+    TRY(store_copy(sim, first, second, 0, 0, f->grain_bytes, why));
+    TRY(hold(sim, second, 2, why));
+    TRY(newton(sim, second, f->rises[0], sigma, 2, converged, why));
+    return *converged ? weigh_flows(sim, second, 2, GAMMA * step, false, why) : STATUS_OK;
+}
+
+status frozen_implicit_step(simulation *sim, double until, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    const double place[3] = {0.0, GAMMA, 1.0};
+    double left = until - sim->time, allowed = frozen_allowed_error(sim);
+    TRY(fit_arrays(sim, why));
+    TRY(store_fill(sim, f->fixed, f->grain_bytes, why));
+    if (isnan(f->next))
+        f->next = isfinite(f->limit) ? f->limit : left;
+    for (;;) {
+        double step = frozen_fit_step(f->next, left);
+        bool converged;
+        frozen_findings found = {1e30, 0.0, 0.0, 0.0};
+        TRY(frozen_write_rows(sim, place, 3, step, why));
+        TRY(run_stages(sim, step, &converged, why));
+        if (converged)
+            TRY(find_error(sim, f->rises[2], step, &found, why));
+        double growth = found.error > 0.0 ? 0.8 * cbrt(allowed / found.error) : 5.0;
+        if (found.error <= allowed && frozen_is_inside(sim, &found)) {
+            double next = step * fmin(growth, 5.0);
+            f->next = step < f->next ? fmax(next, f->next) : next;
+            TRY(frozen_accept(sim, f->rises[2], 2, false, why));
+            beams_deliver(sim, sim->time + GAMMA * step, (1.0 - GAMMA) * step);
+            beams_deliver(sim, sim->time + step, GAMMA * step);
+            frozen_count_step(sim, step, step == left ? until : sim->time + step, &found);
+            return STATUS_OK;
+        }
+        f->rejected++;
+        f->next = step * (found.error > allowed ? fmax(fmin(growth, 0.8), 0.1) : 0.5);
+        if (f->next < 1e-6 * fmin(f->limit, left))
+            return frozen_give_up(sim, step, &found, why);
+    }
+}
