@@ -8,7 +8,7 @@
 
 #define ITERATIONS_MAX 20000
 /* Iterations between looks of the host. */
-#define LOOK_EVERY 25
+#define LOOK_EVERY 8
 #define NEWTON_MAX 60
 /* Radiation's slope is a chord in so many iterations, until temperatures are near. */
 #define CHORDS 4
