@@ -84,12 +84,26 @@ static bool wall_heat_is_written(const simulation *sim)
     return sim->all.law[SLOT_CONDUCTION] != NULL;
 }
 
+/* Of walls that move: where their point of reference is, its velocity, and how they are turned. */
+static void list_poses(output *o)
+{
+    static const results_observable part[] = {{"position", "m", 3}, {"velocity", "m/s", 3}, {"orientation", "1", 4}};
+    const scene *scene = o->sim->scene;
+    for (int w = 0; w < scene->wall_count; w++)
+        for (int p = 0; scene_wall_moves(scene, w) && p < 3; p++) {
+            char *name = o->wall_name[3 * scene->wall_count + 3 * w + p];
+            snprintf(name, sizeof o->wall_name[0], "walls/%s/%s", scene->wall[w].name, part[p].name);
+            o->observable[o->observable_count++] = (results_observable){name, part[p].unit, part[p].components};
+            o->value_count += part[p].components;
+        }
+}
+
 static status list_observables(output *o, failure *why)
 {
     static const char *const of_contacts[] = {"elastic_energy", "overlap_max", "coordination_number", "contacts"};
     const scene *scene = o->sim->scene;
-    o->observable = calloc((size_t)(scene->output.observable_count + 3 * scene->wall_count + 1), sizeof *o->observable);
-    o->wall_name = calloc((size_t)(3 * scene->wall_count + 1), sizeof *o->wall_name);
+    o->observable = calloc((size_t)(scene->output.observable_count + 6 * scene->wall_count + 1), sizeof *o->observable);
+    o->wall_name = calloc((size_t)(6 * scene->wall_count + 1), sizeof *o->wall_name);
     if (!o->observable || !o->wall_name)
         return fail(why, STATUS_ERROR, "out of memory");
     for (int k = 0; k < scene->output.observable_count; k++) {
@@ -114,6 +128,7 @@ static status list_observables(output *o, failure *why)
         o->observable[o->observable_count++] = (results_observable){name, "W", 1};
         o->value_count++;
     }
+    list_poses(o);
     o->value = calloc((size_t)o->value_count + 1, sizeof *o->value);
     return o->value ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
 }
@@ -324,6 +339,24 @@ static status put_walls(output *o, double *to, failure *why)
     return result;
 }
 
+static void put_poses(const output *o, double *to)
+{
+    const scene *scene = o->sim->scene;
+    for (int w = 0; w < scene->wall_count; w++) {
+        if (!scene_wall_moves(scene, w))
+            continue;
+        body_pose pose = simulation_wall_pose(o->sim, w);
+        double arm[3];
+        pose_point(&pose, wall_reference(&scene->wall[w]), to);
+        for (int c = 0; c < 3; c++)
+            arm[c] = to[c] - pose.pivot[c];
+        for (int c = 0; c < 3; c++)
+            to[3 + c] = pose.velocity[c] + pose.spin[(c + 1) % 3] * arm[(c + 2) % 3] - pose.spin[(c + 2) % 3] * arm[(c + 1) % 3];
+        pose_quaternion(&pose, to + 6);
+        to += 10;
+    }
+}
+
 status output_observe(output *o, failure *why)
 {
     measured m;
@@ -345,6 +378,7 @@ status output_observe(output *o, failure *why)
     for (int k = 0; k < o->sim->scene->output.observable_count; k++)
         to += put_observable(o, o->observable[k].name, &m, to);
     TRY(put_walls(o, to, why));
+    put_poses(o, to + (wall_heat_is_written(o->sim) ? 7 : 6) * o->sim->scene->wall_count);
     return results_observe(o->file, o->sim->step, o->sim->time, o->value, why);
 }
 

@@ -317,3 +317,38 @@ void wall_faces(const wall *wall, const body_pose *pose, int party, int wall_ind
     for (int f = 0; f < count; f++)
         place_face(&out[f], pose, party, wall_index);
 }
+
+const double *wall_reference(const wall *wall)
+{
+    switch (wall->shape) {
+    case WALL_PLANE:
+        return wall->point_m;
+    case WALL_BOX:
+        return wall->low_m;
+    case WALL_RECTANGLE:
+        return wall->corners_m[0];
+    case WALL_DISC:
+        return wall->center_m;
+    default:
+        return wall->axis_point_m;
+    }
+}
+
+void pose_quaternion(const body_pose *pose, double *q)
+{
+    const double *r = pose->rotation;
+    double largest = 0.0, square[4] = {1 + r[0] + r[4] + r[8], 1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8], 1 - r[0] - r[4] + r[8]};
+    int most = 0;
+    for (int k = 0; k < 4; k++)
+        if (square[k] > largest) {
+            largest = square[k];
+            most = k;
+        }
+    double s = 0.5 / sqrt(largest);
+    const double part[4][4] = {{largest, r[7] - r[5], r[2] - r[6], r[3] - r[1]},
+                               {r[7] - r[5], largest, r[1] + r[3], r[2] + r[6]},
+                               {r[2] - r[6], r[1] + r[3], largest, r[5] + r[7]},
+                               {r[3] - r[1], r[2] + r[6], r[5] + r[7], largest}};
+    for (int k = 0; k < 4; k++)
+        q[k] = s * part[most][k];
+}

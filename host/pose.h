@@ -29,6 +29,11 @@ void pose_vector(const body_pose *pose, const double *v0, double *v);
 /* The motion over [t, t + dt], for grains that follow it. */
 clast_mover moving_body_step(const moving_body *body, double t, double dt);
 
+/* Unit quaternion w, x, y, z of its rotation. */
+void pose_quaternion(const body_pose *pose, double *q);
+
+/* Point of a wall whose place stands for the wall's. */
+const double *wall_reference(const wall *wall);
 /* Number of faces of a wall, and the faces at a pose. */
 int wall_face_count(const wall *wall);
 void wall_faces(const wall *wall, const body_pose *pose, int party, int wall_index, clast_face *out);

@@ -198,23 +198,6 @@ static status find_area(const simulation *sim, const drive *d, double *out, fail
 
 /* ---- stages ---- */
 
-/* Point of a wall from which its way is counted. */
-static const double *reference_of(const wall *wall)
-{
-    switch (wall->shape) {
-    case WALL_PLANE:
-        return wall->point_m;
-    case WALL_BOX:
-        return wall->low_m;
-    case WALL_RECTANGLE:
-        return wall->corners_m[0];
-    case WALL_DISC:
-        return wall->center_m;
-    default:
-        return wall->axis_point_m;
-    }
-}
-
 /* From the first of its walls to the far end of the bed as it was generated. */
 static double way_through_bed(const simulation *sim, const drive *d)
 {
@@ -224,7 +207,7 @@ static double way_through_bed(const simulation *sim, const drive *d)
         far += fmax(n[c] * sim->bed_low[c], n[c] * sim->bed_high[c]) + fabs(n[c]) * sim->radius_max;
     for (int w = 0; w < sim->scene->wall_count; w++)
         if (sim->drives.of_wall[w] == d - sim->drives.drive)
-            first = fmin(first, along(reference_of(&sim->scene->wall[w]), n));
+            first = fmin(first, along(wall_reference(&sim->scene->wall[w]), n));
     return far - first;
 }
 
