@@ -359,7 +359,7 @@ static void test_steady_radiation(void **state)
     advance(&c, 1.0);
     double ta = temperature_of(&c, 0), tb = temperature_of(&c, 1), area = 4.0 * PI * 9e-6;
     double into_b = STEFAN * area * (pow(3000.0, 4) - pow(tb, 4)), into_a = STEFAN * area * (pow(3000.0, 4) - pow(ta, 4));
-    RELATIVE(flow_of(&c, 0, 1), into_b, mixed(&c) ? 1e-3 : 1e-9);
+    RELATIVE(flow_of(&c, 0, 1), into_b, mixed(&c) ? 1e-2 : 1e-9); /* 3000 K in a float: to 2e-4 K, 0.7 W/K */
     RELATIVE(-flow_of(&c, 0, -1), into_a + into_b, mixed(&c) ? 1e-3 : 1e-9);
     NEAR(temperature_of(&c, 2), 3000.0, mixed(&c) ? 1e-2 : 1e-8);
     case_close(&c);
