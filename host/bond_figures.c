@@ -247,6 +247,9 @@ static status check_cohesion(const scene *s, failure *why)
     if (scene_effect(s, -1, SLOT_BOND))
         return fail(why, STATUS_BAD_INPUT, "%s:%d:%d: effects[cohesion]: a scene has bonds or cohesion, not both: each takes the normal force over; keep one",
                     s->path, cohesion->at.line, cohesion->at.column);
+    if (cohesion->law == &law_jkr && scene_effect(s, -1, SLOT_MODULUS))
+        return fail(why, STATUS_BAD_INPUT, "%s:%d:%d: effects[cohesion]: `jkr` has constant moduli, and the scene softens them; take `sjkr` or `dmt`",
+                    s->path, cohesion->at.line, cohesion->at.column);
     if (cohesion->law != &law_dmt && normal && normal->law != &law_hertz)
         return fail(why, STATUS_BAD_INPUT, "%s:%d:%d: effects[cohesion]: `%s` needs the normal law `hertz`; the scene has `%s`", s->path,
                     cohesion->at.line, cohesion->at.column, cohesion->law->name, normal->law->name);

@@ -135,7 +135,7 @@ const law *bonding_of(const law *bond, const double *option)
 
 /* ---- adhesion ---- */
 
-enum { ADHESION_CLAMPS = BOND_OWN };
+enum { ADHESION_CLAMPS = BOND_OWN, ADHESION_FOLLOWS };
 
 static void derive_adhesion(const contact_class *class, const double *option, double *parameter)
 {
@@ -153,6 +153,8 @@ static void adhesion_constants(const double *option, char *text, size_t size)
 {
     size_t used = strlen(text);
     snprintf(text + used, size - used, "#define ADHESION_CLAMPS %d\n", option[ADHESION_CLAMPS] == 0.0);
+    used = strlen(text);
+    snprintf(text + used, size - used, "#define ADHESION_FOLLOWS %d\n", option[ADHESION_FOLLOWS] == 0.0);
 }
 
 /* Exponents of all contacts that bond, in quarters, where they are whole numbers and the same; false where they are not. */
@@ -194,7 +196,9 @@ const law law_adhesion = {
     .kernel_file = "effect/bond_adhesion.cl",
     .options = {BOND_OPTIONS,
                 {"clamps", "printed|none", 0, 0, 0,
-                 "as printed, no net pull beyond the equilibrium overlap and no net push short of it, or spring and damper as they add up"}},
+                 "as printed, no net pull beyond the equilibrium overlap and no net push short of it, or spring and damper as they add up"},
+                {"adhesion_follows_modulus", "true|false", 0, 0, 0,
+                 "where moduli soften, adhesion softens with E*, so that the equilibrium overlap stays; or it is constant"}},
     .pair_fields = {&field_bonded},
     .parameters = {"ADHESION_STIFFNESS", "ADHESION_RADIUS_POWER", "ADHESION_EXPONENT", "ADHESION_DAMPING", "ADHESION_TENSILE", "ADHESION_SHEAR"},
     .derive = derive_adhesion,

@@ -14,6 +14,10 @@
 #define ADHESION_TENSILE 4
 #define ADHESION_SHEAR 5
 #endif
+/* 1: adhesion softens with the modulus of the contact, so that the overlaps at rest stay. */
+#ifndef ADHESION_FOLLOWS
+#define ADHESION_FOLLOWS 1
+#endif
 #ifndef ADHESION_CLAMPS
 #define ADHESION_CLAMPS 1
 #endif
@@ -61,7 +65,7 @@ INLINE real adhesion_power(real x, int m, real y, int n)
 /* k d^a where the two touch. */
 INLINE real adhesion_force(const contact *c)
 {
-    real k = modulus_normal(c) * c->value[ADHESION_STIFFNESS], d = c->overlap;
+    real k = (ADHESION_FOLLOWS ? modulus_normal(c) : R(1.0)) * c->value[ADHESION_STIFFNESS], d = c->overlap;
     if (ADHESION_SHARED)
         return k * adhesion_power(ADHESION_RADIUS_QUARTERS < 0 ? c->radius_inverse : c->radius_eff, abs(ADHESION_RADIUS_QUARTERS), d, ADHESION_QUARTERS);
     bool touches = d > R(0.0);

@@ -13,7 +13,7 @@ typedef struct cohesion_state {
 
 INLINE real cohesion_pull(const contact *c)
 {
-    return c->value[COHESION_PULL] * c->contact_radius * sqrt(c->contact_radius);
+    return modulus_root(modulus_normal(c)) * c->value[COHESION_PULL] * c->contact_radius * sqrt(c->contact_radius);
 }
 
 INLINE void cohesion_force(const contact *c, cohesion_state *s, response *out)

@@ -365,6 +365,27 @@ static void test_temperatures(void **state)
     }
 }
 
+/* Two grains at a temperature at which moduli are at exp(-0.5): the equilibrium stays, or with a constant adhesion grows as (E0/E)^2. */
+static void test_softened(void **state)
+{
+    (void)state;
+    for (int constant = 0; constant < 2; constant++) {
+        double at_rest = constant ? equilibrium * exp(1.0) : equilibrium;
+        text t = {0};
+        put(&t, "effects: [{slot: normal, law: hertz}, {slot: modulus, law: exponential_softening}, {slot: bond, law: adhesion, adhesion_follows_modulus: %s}]\n",
+            constant ? "false" : "true");
+        put(&t, "materials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: 0, specific_heat_j_kgk: 100, "
+                "softening_temperature_k: 500, softening_rate: 0.5}]\n", density, young);
+        put(&t, "interactions: [{between: default, bond_equilibrium_overlap_m: %.17g, bond_damping_ratio: 0.7}]\n", equilibrium);
+        put(&t, "particles: [{name: p, material: m, generator: list, temperature_k: 1000, items: [{radius_m: 0.001, position_m: [0, 0, 0]}, {radius_m: "
+                "0.001, position_m: [%.17g, 0, 0]}]}]\n", 2.0 * radius - 0.9 * at_rest);
+        physics_case c = case_open(&t);
+        case_run(&c, 6000, 2e-7);
+        RELATIVE(overlap_of(&c, 0), at_rest, 1e-5);
+        case_close(&c);
+    }
+}
+
 /* ---- energy, momentum, symmetry ---- */
 
 static void test_energy_never_rises(void **state)
@@ -583,7 +604,7 @@ int main(void)
         cmocka_unit_test(test_wall_and_weight),   cmocka_unit_test(test_critical_velocity),
         cmocka_unit_test(test_breaks_again),      cmocka_unit_test(test_pull_off),
         cmocka_unit_test(test_strengths),         cmocka_unit_test(test_scalar_and_time),
-        cmocka_unit_test(test_temperatures),      cmocka_unit_test(test_energy_never_rises), cmocka_unit_test(test_cluster_keeps_momentum),
+        cmocka_unit_test(test_temperatures),      cmocka_unit_test(test_softened),      cmocka_unit_test(test_energy_never_rises), cmocka_unit_test(test_cluster_keeps_momentum),
         cmocka_unit_test(test_swapped),           cmocka_unit_test(test_bits),
         cmocka_unit_test(test_refused),           cmocka_unit_test(test_step_limit),
     };
