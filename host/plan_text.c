@@ -58,6 +58,39 @@ static void print_particles(const plan *p)
                (long long)p->overlap_i, (long long)p->overlap_j);
 }
 
+static void print_servo(const servo_choice *servo)
+{
+    if (!servo->given)
+        return;
+    const servo_spec *s = &servo->spec;
+    printf(", keeps %.6g %s along [%.3g, %.3g, %.3g] at %.3g m/s at most", isnan(s->force_n) ? s->pressure_pa : s->force_n,
+           isnan(s->force_n) ? "Pa" : "N", s->direction[0], s->direction[1], s->direction[2], s->speed_max_m_s);
+}
+
+static void print_walls(const plan *p)
+{
+    static const char *const shape[] = {"plane", "box", "rectangle", "disc", "cylinder", "cone"};
+    const scene *scene = p->scene;
+    if (scene->wall_count > 0)
+        printf("\nWalls\n");
+    for (int g = 0; g < scene->wall_group_count; g++) {
+        printf("  group %-10s%s", scene->wall_group[g].name, scene->wall_group[g].motion.count > 0 ? " moves as prescribed" : "");
+        print_servo(&scene->wall_group[g].servo);
+        printf("\n");
+    }
+    for (int w = 0; w < scene->wall_count; w++) {
+        const wall *wall = &scene->wall[w];
+        bool round = wall->shape == WALL_CYLINDER || wall->shape == WALL_CONE;
+        printf("  %-16s %s%s", wall->name, shape[wall->shape], !round ? "" : wall->outside ? ", from outside" : ", from inside");
+        if (wall->group >= 0)
+            printf(", of the group %s", scene->wall_group[wall->group].name);
+        if (wall->motion.count > 0)
+            printf(", moves as prescribed");
+        print_servo(&wall->servo);
+        printf("\n");
+    }
+}
+
 static bool slot_is_live(const plan *p, slot_id slot)
 {
     for (int s = 0; s < p->stage_count; s++)
@@ -253,6 +286,7 @@ void plan_write_text(const plan *p)
     printf("%s\n  scene: %s, %d dimensions, %s precision\n  device: %s\n", p->scene->title ? p->scene->title : "Untitled",
            p->scene->path, p->scene->dimensions, precision_name(p->scene), device);
     print_particles(p);
+    print_walls(p);
     print_laws(p);
     print_bonds(p);
     print_unused(p);
