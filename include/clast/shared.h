@@ -6,8 +6,8 @@
 #ifdef REAL_IS_FLOAT
 /* In mixed precision a number of 64 bits is two floats: the number rounded, and what that leaves (kernels/precision/mixed.cl). The host turns
  * its doubles into such pairs before they leave it. A struct, so that nobody takes the bits for a number. */
-typedef struct clast_f64 {
-    ulong bits;
+typedef struct __attribute__((aligned(8))) clast_f64 {
+    float high, low;
 } clast_f64;
 #else
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable

@@ -19,24 +19,24 @@ typedef struct precise3 {
     precise x, y, z;
 } precise3;
 
-/* The nearest real of a stored number. */
-INLINE real number(exact stored)
-{
-    return as_float((uint)stored.bits);
-}
+/* The nearest real of a stored number. These two are macros, since a struct of two floats that is passed on becomes a vector of two on some
+ * devices, and that ends the vectorisation over pairs. */
+#define number(stored) ((stored).high)
+#define precise_load(stored) precise_of((stored).high, (stored).low)
 
-INLINE precise precise_load(exact stored)
+INLINE precise precise_of(real hi, real lo)
 {
     precise r;
-    r.hi = as_float((uint)stored.bits);
-    r.lo = as_float((uint)(stored.bits >> 32));
+    r.hi = hi;
+    r.lo = lo;
     return r;
 }
 
 INLINE exact precise_store(precise a)
 {
     exact r;
-    r.bits = (ulong)as_uint(a.hi) | ((ulong)as_uint(a.lo) << 32);
+    r.high = a.hi;
+    r.low = a.lo;
     return r;
 }
 
@@ -225,7 +225,7 @@ INLINE apart3 apart_of(precise3 to, precise3 from)
     apart3 r;
     real one = fma(R(0.0), to.y.lo, R(1.0));
     r.whole = v3(to.x.hi - from.x.hi, fma(to.y.hi, one, -from.y.hi), to.z.hi - from.z.hi);
-    r.rest = v3(to.x.lo - from.x.lo, to.y.lo - from.y.lo, to.z.lo - from.z.lo);
+    r.rest = v3(fma(to.x.lo, one, -from.x.lo), to.y.lo - from.y.lo, fma(to.z.lo, one, -from.z.lo));
     return r;
 }
 
