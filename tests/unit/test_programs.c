@@ -124,13 +124,14 @@ static live_laws with(const law *a, const law *b)
 }
 
 /* All slots filled, with the first or the second law where there are two. */
-static live_laws all_at_once(bool second)
+static live_laws all_at_once(bool second, bool mixed)
 {
     live_laws live;
     memset(&live, 0, sizeof live);
     for (size_t n = 0; n < LAWS; n++)
         if (!live.law[every_law[n]->slot] || second)
             live.law[every_law[n]->slot] = every_law[n];
+    live.law[SLOT_PRECISION] = mixed ? &law_precision_mixed : NULL;
     complete(&live);
     live.servo = true;
     return live;
@@ -172,7 +173,7 @@ static bool have_clang(void)
     return system("clang --version >/dev/null 2>&1") == 0;
 }
 
-/* A compiler at work on one program. */
+/* A compiler at work on one program. One in mixed precision is compiled for a device without fp64, which refuses any double. */
 typedef struct compilation {
     pid_t child;
     char path[64], what[512];
@@ -192,7 +193,7 @@ static void start_clang(compilation *c, const live_laws *live)
     c->child = fork();
     if (c->child == 0) {
         execlp("clang", "clang", "-x", "cl", "-cl-std=CL1.2", "-Xclang", "-finclude-default-header", "-Xclang", "-fdeclare-opencl-builtins",
-               "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter", "-Wno-unused-function", c->path, (char *)NULL);
+               "-fsyntax-only", "-Xclang", live->law[SLOT_PRECISION] ? "-cl-ext=-cl_khr_fp64" : "-cl-ext=+cl_khr_fp64", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter", "-Wno-unused-function", c->path, (char *)NULL);
         _exit(127);
     }
     assert_true(c->child > 0);
@@ -253,8 +254,8 @@ static void test_offline(void **state)
     }
     live_laws live = with(NULL, NULL);
     compile_offline(&all, &live);
-    for (int second = 0; second < 2; second++) {
-        live = all_at_once(second != 0);
+    for (int k = 0; k < 4; k++) {
+        live = all_at_once(k % 2 != 0, k > 1);
         compile_offline(&all, &live);
     }
     for (size_t a = 0; a < LAWS; a++)
@@ -290,7 +291,7 @@ static void test_no_file_forgotten(void **state)
         bool found = strcmp(f->name, "shared.h") == 0 || strcmp(f->name, "base.cl") == 0;
         for (size_t n = 0; n <= LAWS + 1 && !found; n++) {
             const char *files[64];
-            live_laws live = n <= LAWS ? with(n < LAWS ? every_law[n] : NULL, NULL) : all_at_once(true);
+            live_laws live = n <= LAWS ? with(n < LAWS ? every_law[n] : NULL, NULL) : all_at_once(true, true);
             live.servo = true;
             int count = files_of(&live, files);
             for (int k = 0; k < count; k++)
@@ -368,7 +369,7 @@ static void test_on_device(void **state)
         check_on_device(&live);
     }
     for (int second = 0; second < 2; second++) {
-        live_laws live = all_at_once(second != 0);
+        live_laws live = all_at_once(second != 0, second != 0);
         check_on_device(&live);
     }
 }

@@ -147,6 +147,12 @@ class Resume(Case):
         for every in ("0.012", "0.0171"):
             self.check(STAGES.replace("CHECKPOINT", every) + "integrator: velocity_verlet\n")
 
+    def test_mixed(self):
+        """Pairs of floats are kept whole."""
+        self.check(FIXED + "precision: mixed\n")
+        self.check(AUTOMATIC + "precision: mixed\nintegrator: velocity_verlet\n")
+        self.check(STAGES.replace("CHECKPOINT", "0.0171") + "precision: mixed\n")
+
     def test_grains_that_left(self):
         _, whole = self.check(LEAVING)
         left = observables(whole)["left_count"].ravel()

@@ -69,13 +69,16 @@ class Vectorised(unittest.TestCase):
     def check(self, effects, walls, dynamic="0.4", exponent="1"):
         text = SCENE.replace("EFFECTS", effects).replace("WALLS", walls).replace("DYNAMIC", dynamic).replace("EXPONENT", exponent)
         code = self.machine_code(text)
-        roots = len(re.findall(r"vsqrtpd .*%[yz]mm", code))
-        divisions = len(re.findall(r"vdivpd .*%[yz]mm", code))
-        self.assertGreater(roots, 1, f"{effects}: {len(re.findall('vsqrtsd', code))} scalar roots, no vector ones")
-        self.assertGreater(divisions, 1, f"{effects}: {len(re.findall('vdivsd', code))} scalar divisions, no vector ones")
+        roots = len(re.findall(r"vsqrtp[sd] .*%[yz]mm", code))
+        divisions = len(re.findall(r"vdivp[sd] .*%[yz]mm", code))
+        self.assertGreater(roots, 1, f"{effects}: {len(re.findall('vsqrts[sd]', code))} scalar roots, no vector ones")
+        self.assertGreater(divisions, 1, f"{effects}: {len(re.findall('vdivs[sd]', code))} scalar divisions, no vector ones")
 
     def test_friction_and_plane(self):
         self.check(MINDLIN, PLANE)
+
+    def test_mixed(self):
+        self.check(MINDLIN + ROLLING, PLANE + "\nprecision: mixed")
 
     def test_rolling_and_box_with_two_frictions(self):
         self.check(MINDLIN + ROLLING, BOX, "0.3")
