@@ -21,6 +21,7 @@ particles:
   - {name: bed, material: glass, generator: lattice, lattice: simple_cubic, counts: [5, 5, 5], spacing_m: 2.0e-3, radius_m: 1.0e-3, temperature_k: 300}
 WALLS
 stages: [{name: go, until: {steps: 2}, step_s: 1.0e-5}]
+contact_table: {step_form: two_kernels}
 """
 HERTZ = "{slot: normal, law: hertz}"
 MINDLIN = HERTZ + ", {slot: tangential, law: mindlin}"
