@@ -56,9 +56,10 @@ static void test_cantilever(void **state)
     for (int k = 1; k <= LINKS; k++)
         put_grain(&t, radius, (double[]){k * length, 0, 0}, (double[]){0, 0, 0}, (double[]){0, 0, 0});
     physics_case c = case_open(&t);
-    case_run(&c, 1, 2e-6);
+    int finer = case_verlet() ? 2 : 1; /* its limit is lower where damping is strong */
+    case_run(&c, 1, 2e-6 / finer);
     assert_int_equal(alive(&c), LINKS);
-    case_run(&c, 20000, 2e-6);
+    case_run(&c, 20000 * finer, 2e-6 / finer);
     RELATIVE(-case_get(&c, "position", LINKS, 2), expected, 2e-4);
     case_close(&c);
 }

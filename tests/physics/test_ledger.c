@@ -180,7 +180,8 @@ static void test_falling(void **state)
     case_run(&c, 1000, 1e-4);
     read_ledger(&c, e);
     double v = 9.81 * 1e-4 * (1.0 + 0.75 * 999.0), kinetic = 0.5 * sphere_mass(2500, 2e-3) * v * v; /* no velocity to damp in the first step */
-    RELATIVE(e[GRAVITY] - e[BODY], kinetic, 1e-12);
+    /* the sums of velocity Verlet are half a step behind, of 1000 */
+    RELATIVE(e[GRAVITY] - e[BODY], kinetic, case_verlet() ? 2e-3 : 1e-12);
     RELATIVE(e[BODY], 0.25 * e[GRAVITY], 1e-5);
     case_close(&c);
 }
@@ -244,7 +245,7 @@ static void test_sheared(void **state)
     for (int b = 0; b < 2; b++) {
         double coarse = sheared_error(bodies[b], 2e-5), fine = sheared_error(bodies[b], 1e-5);
         BETWEEN(coarse, 0.0, 0.05);
-        BETWEEN(coarse / fine, 1.8, 2.3); /* first order */
+        BETWEEN(coarse / fine, 1.8, case_verlet() ? 100.0 : 2.3); /* first order; Verlet's falls at least as fast */
     }
 }
 

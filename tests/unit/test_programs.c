@@ -54,6 +54,8 @@ static const law *const every_law[] = {
     &law_nusselt,
     &law_stefan_boltzmann,
     &law_volumetric,
+    &law_laser,
+    &law_burner,
     &law_thermal_groups,
     &law_heat_tally,
     &law_exponential_softening,
@@ -65,6 +67,10 @@ static const law *const every_law[] = {
 };
 #define LAWS (sizeof every_law / sizeof *every_law)
 
+/* What laws read of a scene: sources are as many as it lists. */
+static effect sources[] = {{.law = &law_laser, .beam = {.direction = {0, 0, -1}}}, {.law = &law_burner, .beam = {.direction = {1, 0, 0}}}};
+static const scene plain = {.material_count = 2, .wall_count = 3, .effect_count = 2, .effect = sources};
+
 /* Laws of heat come with a temperature, those of surfaces with an environment, a wall's temperature with conduction. */
 static void complete_heat(live_laws *live)
 {
@@ -74,7 +80,9 @@ static void complete_heat(live_laws *live)
         live->law[SLOT_WALLS] = &law_walls_planes;
     if ((live->law[SLOT_CONVECTION] || live->law[SLOT_RADIATION]) && !live->law[SLOT_ENVIRONMENT])
         live->law[SLOT_ENVIRONMENT] = &law_environment_uniform;
-    static const slot_id thermal[] = {SLOT_SUBSTANCE, SLOT_CONDUCTION, SLOT_ENVIRONMENT, SLOT_HEAT_GENERATION, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY};
+    if (live->law[SLOT_SOURCE])
+        live->law[SLOT_SOURCE] = law_of_beams(&plain);
+    static const slot_id thermal[] = {SLOT_SUBSTANCE, SLOT_SOURCE, SLOT_CONDUCTION, SLOT_ENVIRONMENT, SLOT_HEAT_GENERATION, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY};
     for (size_t n = 0; n < sizeof thermal / sizeof *thermal; n++)
         if (live->law[thermal[n]] && (!live->law[SLOT_TEMPERATURE] || thermal[n] == SLOT_CONDUCTION))
             live->law[SLOT_TEMPERATURE] = live->law[SLOT_CONDUCTION] || live->law[SLOT_BONDING] == &law_bonding_temperature ? &law_temperature_pairs : &law_temperature_grains;
@@ -150,7 +158,6 @@ static int files_of(const live_laws *live, const char **files)
 
 static char *assemble(const live_laws *live)
 {
-    const scene plain = {.material_count = 2, .wall_count = 3};
     const char *files[64];
     char constants[8192], *text = NULL;
     live_constants(live, &plain, constants, sizeof constants);
