@@ -135,6 +135,26 @@ static void test_oblique_beam_meets_the_first_grain(void **state)
     case_close(&c);
 }
 
+/* Depth runs from top to top: a small grain below a large one in the same column. */
+static void test_depth_of_unequal_grains(void **state)
+{
+    (void)state;
+    const double large = 5e-4, small = 2e-4, apart = 2e-3, mu = 500.0;
+    text t = {0};
+    put(&t, "effects:\n"
+            "  - {slot: source, law: laser, name: spot, diameter_m: 0.01, direction: [0, 0, -1], attenuation_1_m: %g, "
+            "path: {time_s: [0], position_m: [[0, 0, 0]], power_w: [1000]}}\n"
+            "materials: [{name: metal, density_kg_m3: 7800, specific_heat_j_kgk: 600, absorptance: 1}]\n"
+            "particles: [{name: two, material: metal, generator: list, temperature_k: 300, items: [{position_m: [0, 0, 0], radius_m: %g}, "
+            "{position_m: [0, 0, %g], radius_m: %g}]}]\n", mu, small, apart, large);
+    physics_case c = case_open(&t);
+    double *rise = rises(&c, 1, 1e-3);
+    double capacity = 600.0 * 7800.0 * 4.0 / 3.0 * PI * pow(small, 3), s = apart + large - small;
+    RELATIVE(rise[0], 1000.0 / (PI * 0.25e-4) * PI * small * small * exp(-mu * s) * 1e-3 / capacity, 1e-6); /* heights in millionths of a diameter */
+    free(rise);
+    case_close(&c);
+}
+
 /* A moving beam of varying power over a row of grains: each takes what falls on it while its centre is in the beam, step by step. */
 static void test_moving_beam(void **state)
 {
@@ -250,6 +270,7 @@ int main(void)
                                        cmocka_unit_test(test_burner),
                                        cmocka_unit_test(test_gaussian_from_the_side),
                                        cmocka_unit_test(test_oblique_beam_meets_the_first_grain),
+                                       cmocka_unit_test(test_depth_of_unequal_grains),
                                        cmocka_unit_test(test_moving_beam),
                                        cmocka_unit_test(test_two_sources),
                                        cmocka_unit_test(test_batches),
