@@ -57,9 +57,25 @@ static double invert(double (*restitution)(double), double wanted)
     return 0.5 * (low + high);
 }
 
+/* A search integrates fifty collisions; a scene asks for the same few values once for each pair of bodies and each look at its constants, so
+ * the last ones are kept. */
+#define KEPT 16
+
 double hertz_damping_ratio(double restitution)
 {
-    return invert(hertz_restitution, restitution);
+    static _Thread_local struct {
+        double restitution, ratio;
+    } kept[KEPT];
+    static _Thread_local int count;
+    for (int k = 0; k < KEPT && k < count; k++)
+        if (kept[k].restitution == restitution)
+            return kept[k].ratio;
+    double ratio = invert(hertz_restitution, restitution);
+    int place = count++ % KEPT;
+    kept[place].restitution = restitution;
+    kept[place].ratio = ratio;
+    count = count == 2 * KEPT ? KEPT : count;
+    return ratio;
 }
 
 double linear_damping_ratio(double restitution)
