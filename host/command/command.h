@@ -19,6 +19,9 @@ status command_check(int argc, char **argv, failure *why);
 status command_devices(int argc, char **argv, failure *why);
 status command_bench(int argc, char **argv, failure *why);
 status command_study(int argc, char **argv, failure *why);
+/* Studies, found by command_study. */
+status command_study_accuracy(int argc, char **argv, failure *why);
+status command_study_stability(int argc, char **argv, failure *why);
 status command_reference(int argc, char **argv, failure *why);
 
 /* Options that several commands have, as argp children; their input is the struct of the same name. */

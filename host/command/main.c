@@ -14,7 +14,7 @@ static const command commands[] = {
     {"check", "check a scene and show what it will do and cost", command_check},
     {"devices", "list the devices that can compute", command_devices},
     {"bench", "measure speed and memory", command_bench},
-    {"study", "how accurate or stable a scene is (not in this version)", command_study},
+    {"study", "find out how accurate or stable a scene is", command_study},
     {"reference", "print the reference of all scene keys", command_reference},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };

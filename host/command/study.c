@@ -1,33 +1,66 @@
-/* clast study: its place is kept, so that the message says more than that the command is unknown. */
+/* clast study: finds which study is asked for; each parses its own arguments (study_accuracy.c, study_stability.c). */
 #include "command.h"
 
+#include <stdio.h>
 #include <string.h>
 
-enum { KEY_TOLERANCE = 256 };
+static const command studies[] = {
+    {"accuracy", "what the answers of a scene cost in time, and how far off they are", command_study_accuracy},
+    {"stability", "the largest stable step of a scene against the step that is taken", command_study_stability},
+};
+enum { STUDIES = sizeof studies / sizeof studies[0] };
 
+static char *help_text(int key, const char *text, void *input)
+{
+    (void)input;
+    if (key != ARGP_KEY_HELP_POST_DOC)
+        return (char *)text;
+    char *list = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&list, &size);
+    if (!stream)
+        return NULL;
+    fprintf(stream, "Studies:\n");
+    for (int k = 0; k < STUDIES; k++)
+        fprintf(stream, "  %-10s %s\n", studies[k].name, studies[k].doc);
+    fprintf(stream, "\n`clast study STUDY --help` explains one.");
+    fclose(stream);
+    return list;
+}
+
+/* Stops at the first argument that is no option: what follows belongs to the study. */
 static error_t parse_study(int key, char *argument, struct argp_state *state)
 {
     (void)argument;
-    (void)state;
-    return key == 'o' || key == KEY_TOLERANCE || key == ARGP_KEY_ARG ? 0 : ARGP_ERR_UNKNOWN;
+    int *first = state->input;
+    if (key != ARGP_KEY_ARG)
+        return ARGP_ERR_UNKNOWN;
+    *first = state->next - 1;
+    state->next = state->argc;
+    return 0;
 }
 
-static const struct argp_option study_option[] = {
-    {"tolerance", KEY_TOLERANCE, "X", 0, "Largest change of the answers that is allowed", 0},
-    {"out", 'o', "DIR", 0, "Folder for the results", 0},
-    {0},
-};
 static const struct argp study_argp = {
-    .options = study_option,
     .parser = parse_study,
-    .args_doc = "accuracy|stability SCENE.yaml",
-    .doc = "Find out how accurate or stable a scene's answers are. This version does not have it yet.",
+    .args_doc = "STUDY SCENE.yaml [ARGUMENT...]",
+    .doc = "Find out how accurate or how stable a scene's answers are, by running it many times.\v ",
+    .help_filter = help_text,
 };
 
 status command_study(int argc, char **argv, failure *why)
 {
-    error_t error = argp_parse(&study_argp, argc, argv, 0, NULL, NULL);
+    int first = 0;
+    error_t error = argp_parse(&study_argp, argc, argv, ARGP_IN_ORDER, NULL, &first);
     if (error)
         return fail(why, STATUS_ERROR, "%s", strerror(error));
-    return fail(why, STATUS_BAD_INPUT, "`clast study` is not in this version");
+    if (first == 0)
+        return fail(why, STATUS_BAD_INPUT, "which study? `clast study accuracy SCENE.yaml` or `clast study stability SCENE.yaml`");
+    for (int k = 0; k < STUDIES; k++)
+        if (strcmp(argv[first], studies[k].name) == 0) {
+            char name[64];
+            snprintf(name, sizeof name, "clast study %s", studies[k].name);
+            argv[first] = name;
+            return studies[k].run(argc - first, argv + first, why);
+        }
+    return fail(why, STATUS_BAD_INPUT, "there is no study `%.100s`; there are accuracy and stability", argv[first]);
 }
