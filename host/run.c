@@ -45,7 +45,7 @@ typedef struct run {
     double good_cost, good_at; /* wall seconds that it took, and when */
     int64_t beyond_limit; /* looks in a row at which the step was past twice its limit */
     bool quiet, terminal;
-    double started, shown, chunk_steps;
+    double started, shown, chunk_steps, stepping;
     int64_t first_step;
 } run;
 
@@ -348,7 +348,9 @@ static status write_due(run *r, failure *why)
 static status run_frozen_stage(run *r, failure *why)
 {
     while (!schedule_stage_over(&r->schedule, r->sim)) {
+        double start = seconds();
         TRY(frozen_advance(r->sim, schedule_next_time(&r->schedule, r->sim), 1, why));
+        r->stepping += seconds() - start;
         show_progress(r);
         TRY(write_due(r, why));
         if (interrupted)
@@ -369,6 +371,7 @@ static status run_stage(run *r, failure *why)
             TRY(simulation_advance(r->sim, some, why));
             steps -= some;
             double spent = fmax(seconds() - start, 1e-6);
+            r->stepping += spent;
             r->chunk_steps = fmax(1.0, fmin(1e6, (double)some * 0.5 / spent));
             show_progress(r);
             if (interrupted && steps > 0)
@@ -480,7 +483,11 @@ static status begin_scene(run *r, const run_options *options, failure *why)
     TRY(output_frame(r->output, why));
     tell(r, "%lld grains on %s, %.0f bytes each; first step after %.2f s", (long long)r->sim->id_count, r->device.info.name,
          (double)r->sim->bytes / (double)r->sim->id_count, seconds() - r->started);
-    return run_stages(r, 0, false, why);
+    double first = seconds();
+    TRY(run_stages(r, 0, false, why));
+    if (options->report)
+        *options->report = (run_report){r->sim->id_count, r->sim->step, r->stepping, first - r->started, r->sim->time};
+    return STATUS_OK;
 }
 
 status run_scene(const run_options *options, failure *why)

@@ -3,6 +3,16 @@
 #define CLAST_HOST_RUN_H
 #include "status.h"
 
+#include <stdint.h>
+
+/* What a run did, for who runs many of them. */
+typedef struct run_report {
+    int64_t grains, steps;
+    double stepping_s; /* wall time of the steps alone, without start, looks and output */
+    double start_s;    /* wall time before the first step */
+    double time_s;     /* simulated */
+} run_report;
+
 typedef struct run_options {
     const char *scene_path;      /* run */
     const char *checkpoint_path; /* resume */
@@ -13,6 +23,7 @@ typedef struct run_options {
     int set_count;
     char *const *sets;
     bool quiet;                  /* no progress on standard error */
+    run_report *report;          /* filled as the run goes; or NULL */
 } run_options;
 
 /* Exit status of the command. Progress and the closing summary go to standard error. SIGINT and SIGTERM end a run after the current batch

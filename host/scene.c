@@ -304,7 +304,14 @@ void scene_free(scene *s)
     free(s->stage);
     free_words(s->output.fields, s->output.field_count);
     free_words(s->output.observables, s->output.observable_count);
-    free_words(s->answers, s->answer_count);
+    free_words(s->study.answers, s->study.answer_count);
+    free_words(s->study.set, s->study.set_count);
+    for (int k = 0; k < s->study.closed_form_count; k++) {
+        free(s->study.closed_form[k].answer);
+        free(s->study.closed_form[k].time_s);
+        free(s->study.closed_form[k].value);
+    }
+    free(s->study.closed_form);
     free(s->title);
     free(s->path);
     free(s->text);

@@ -270,6 +270,25 @@ typedef struct guard_spec {
     double overlap_max, move_max;
 } guard_spec;
 
+/* Values that an answer takes at known times, from a formula. */
+typedef struct closed_form {
+    char *answer; /* one number: a component where the answer has several */
+    int time_count, value_count;
+    double *time_s, *value;
+    place at;
+} closed_form;
+
+/* What `clast study` looks at. */
+typedef struct study_spec {
+    int answer_count, set_count, closed_form_count;
+    char **answers;          /* "kinetic_energy", "particles[pair].items[0].velocity" */
+    char **set;              /* settings laid over the scene for a study */
+    closed_form *closed_form;
+    int64_t samples;         /* times at which answers are compared */
+    int64_t seeds;           /* 0: the answers are compared run by run; else their means over so many seeds */
+    double average_from_s;   /* with seeds: answers are averaged from this time on; NAN: the last sample */
+} study_spec;
+
 typedef struct scene {
     char *title;
     int dimensions;
@@ -296,8 +315,7 @@ typedef struct scene {
     output_spec output;
     table_spec table;
     guard_spec guards;
-    int answer_count;
-    char **answers; /* study */
+    study_spec study;
     char *path;     /* as given; messages begin with it */
     char *text;     /* the scene as YAML after every --set, complete enough to run again */
 } scene;

@@ -1,5 +1,6 @@
 #include "scene_check.h"
 
+#include "answer.h"
 #include "laws/laws.h"
 #include "property.h"
 #include "scene_table.h"
@@ -351,5 +352,6 @@ status scene_check(reader *r)
     TRY(check_needs(r));
     TRY(check_output(r));
     TRY(scene_check_heat(r));
+    TRY(scene_check_study(r));
     return check_planar(r);
 }

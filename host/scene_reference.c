@@ -195,6 +195,7 @@ static void write_page(FILE *page)
     write_section(page, "`contact_table`", &table_section);
     write_section(page, "`guards`", &guard_section);
     write_section(page, "`study`", &study_section);
+    write_section(page, "`closed_form` of a study", &closed_form_section);
 }
 
 char *scene_reference(void)

@@ -441,9 +441,32 @@ static const parameter guard_rows[] = {
 };
 const section guard_section = {.name = "guards", .doc = "Checks that stop a run that goes wrong.", .row = guard_rows};
 
+static const parameter closed_form_rows[] = {
+    {.key = "answer", .type = PARAMETER_TEXT, .required = true, AT(closed_form, answer),
+     .doc = "one of the answers, with its component where it has several: `particles[pair].items[0].velocity.x`"},
+    {.key = "time_s", .type = PARAMETER_NUMBERS, .unit = "s", .required = true, .low = 0, .high = 1e30, AT(closed_form, time_s),
+     .count = offsetof(closed_form, time_count), .doc = "times, which must be among those at which answers are compared"},
+    {.key = "value", .type = PARAMETER_NUMBERS, .required = true, AT(closed_form, value), .count = offsetof(closed_form, value_count),
+     .doc = "what the formula gives at these times"},
+    {0},
+};
+const section closed_form_section = {.name = "closed form", .doc = "What a formula gives for an answer; the error of that answer is measured against it.",
+                                     .row = closed_form_rows, .placed = true, .at = offsetof(closed_form, at)};
+
 static const parameter study_rows[] = {
-    {.key = "answers", .type = PARAMETER_WORDS, AT(scene, answers), .count = offsetof(scene, answer_count), .shown = "[]",
-     .doc = "what a study compares"},
+    {.key = "answers", .type = PARAMETER_WORDS, AT(study_spec, answers), .count = offsetof(study_spec, answer_count), .shown = "[]",
+     .doc = "what a study compares: an observable (`kinetic_energy`, `walls[floor].force.z`), a field of one grain "
+            "(`particles[pair].items[0].velocity`) or of all grains of a group (`particles[bed].temperature`), with `.x` behind it for a component"},
+    {.key = "set", .type = PARAMETER_WORDS, AT(study_spec, set), .count = offsetof(study_spec, set_count), .shown = "[]",
+     .doc = "settings in the form of `--set` that a study lays over the scene, as to make it smaller"},
+    {.key = "samples", .type = PARAMETER_INTEGER, .low = 1, .high = 100000, .fallback = "10", AT(study_spec, samples),
+     .doc = "times at which answers are compared, evenly spread over the run"},
+    {.key = "seeds", .type = PARAMETER_INTEGER, .low = 0, .high = 1000, .fallback = "0", AT(study_spec, seeds),
+     .doc = "for scenes that small differences change beyond recognition: answers are compared by their means over so many values of `seed`"},
+    {.key = "average_from_s", .type = PARAMETER_NUMBER, .unit = "s", .low = 0, .high = 1e30, .shown = "the last sample alone",
+     AT(study_spec, average_from_s), .doc = "with `seeds`: answers are averaged over the samples from this time on"},
+    {.key = "closed_form", .type = PARAMETER_LIST, .section = &closed_form_section, .size = sizeof(closed_form), AT(study_spec, closed_form),
+     .count = offsetof(study_spec, closed_form_count), .doc = "answers that a formula gives, where there is one"},
     {0},
 };
 const section study_section = {.name = "study", .doc = "What `clast study` looks at.", .row = study_rows};
@@ -482,7 +505,7 @@ static const parameter scene_rows[] = {
     {.key = "contact_table", .type = PARAMETER_SECTION, .section = &table_section, AT(scene, table), .doc = "how contacts are searched"},
     {.key = "guards", .type = PARAMETER_SECTION, .section = &guard_section, AT(scene, guards),
      .doc = "checks that stop a run that goes wrong"},
-    {.key = "study", .type = PARAMETER_SECTION, .section = &study_section, .doc = "what a study looks at"},
+    {.key = "study", .type = PARAMETER_SECTION, .section = &study_section, AT(scene, study), .doc = "what a study looks at"},
     {0},
 };
 const section scene_section = {.name = "scene", .doc = "The keys of a scene.", .row = scene_rows};

@@ -1,31 +1,15 @@
 #include "sweep.h"
 
 #include "bed.h"
+#include "crew.h"
 #include "results.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <time.h>
-#include <unistd.h>
 
 #define RUNS_MAX 100000
-/* Grains up to which a run is small: it gains little from a second core. */
-#define SMALL_BED 20000
-
-/* Set by the signal handler alone. */
-static volatile sig_atomic_t interrupted;
-
-static void note_signal(int signal_number)
-{
-    (void)signal_number;
-    interrupted = 1;
-}
 
 typedef struct axis {
     char *path; /* with the = */
@@ -34,10 +18,9 @@ typedef struct axis {
 } axis;
 
 typedef struct member {
-    pid_t child; /* 0: not started, or done */
-    bool started, done;
+    bool done;
     int status;
-    double begun, wall_s;
+    double wall_s;
     char result[4096], log[4096];
 } member;
 
@@ -47,13 +30,6 @@ typedef struct sweep {
     member *member;
     int count, done, jobs;
 } sweep;
-
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void sweep_free(sweep *s)
 {
@@ -166,119 +142,45 @@ static status check_scenes(sweep *s, int64_t *grains, failure *why)
     return STATUS_OK;
 }
 
-static status make_folder(const char *path, failure *why)
-{
-    struct stat found;
-    if (mkdir(path, 0777) == 0)
-        return STATUS_OK;
-    if (errno == EEXIST && stat(path, &found) == 0 && S_ISDIR(found.st_mode))
-        return STATUS_OK;
-    return fail(why, STATUS_BAD_INPUT, "%s: cannot be made a folder for the runs of a sweep: %s", path, strerror(errno == EEXIST ? ENOTDIR : errno));
-}
-
 /* ---- running ---- */
 
-static void run_member(const sweep *s, int run)
+static const char *log_of(void *context, int run)
 {
-    failure why = {{0}};
+    return ((const sweep *)context)->member[run].log;
+}
+
+static status run_member(void *context, int run, failure *why)
+{
+    const sweep *s = context;
     run_options options = s->options->run;
-    char threads[32];
-    int log = open(s->member[run].log, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (log >= 0)
-        dup2(log, STDERR_FILENO);
-    if (s->jobs > 1) { /* runs side by side share the cores of a CPU device out */
-        long cores = sysconf(_SC_NPROCESSORS_ONLN) / s->jobs;
-        snprintf(threads, sizeof threads, "%ld", cores > 1 ? cores : 1);
-        setenv("POCL_MAX_PTHREAD_COUNT", threads, 0);
-    }
     options.out = s->member[run].result;
     options.set_count += s->options->count;
     options.sets = sets_of(s, run);
     options.quiet = true;
-    run_catch_signals();
-    status result = options.sets ? run_scene(&options, &why) : fail(&why, STATUS_ERROR, "out of memory");
-    if (result != STATUS_OK)
-        fprintf(stderr, "%s\n", why.text);
-    fflush(NULL);
-    _exit((int)result);
+    return options.sets ? run_scene(&options, why) : fail(why, STATUS_ERROR, "out of memory");
 }
 
-static status start_member(sweep *s, int run, failure *why)
+static void note_end(void *context, int run, status result, double wall_s)
 {
-    member *m = &s->member[run];
-    fflush(NULL);
-    m->begun = seconds();
-    m->started = true;
-    m->child = fork();
-    if (m->child < 0) {
-        m->child = 0;
-        return fail(why, STATUS_ERROR, "a run of the sweep cannot be started: %s", strerror(errno));
-    }
-    if (m->child == 0)
-        run_member(s, run);
-    return STATUS_OK;
-}
-
-static void last_line(const char *path, char *text, size_t size)
-{
-    FILE *file = fopen(path, "r");
-    char line[2048];
-    text[0] = '\0';
-    while (file && fgets(line, sizeof line, file))
-        if (line[0] != '\n')
-            snprintf(text, size, "%s", line);
-    if (file)
-        fclose(file);
-    text[strcspn(text, "\n")] = '\0';
-}
-
-static void note_end(sweep *s, int run, int wait_status)
-{
+    sweep *s = context;
     member *m = &s->member[run];
     char what[1024], line[2048];
-    m->child = 0;
     m->done = true;
-    m->wall_s = seconds() - m->begun;
-    m->status = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : STATUS_ERROR;
+    m->wall_s = wall_s;
+    m->status = (int)result;
     s->done++;
     describe(s, run, what, sizeof what);
-    last_line(m->log, line, sizeof line);
+    crew_last_line(m->log, line, sizeof line);
     if (m->status != STATUS_OK)
         fprintf(stderr, "[%d/%d] %s: failed (exit code %d): %s\n", s->done, s->count, what, m->status, line);
     else if (!s->options->run.quiet)
         fprintf(stderr, "[%d/%d] %s: %.3g s\n", s->done, s->count, what, m->wall_s);
 }
 
-static void stop_members(const sweep *s)
-{
-    for (int r = 0; r < s->count; r++)
-        if (s->member[r].child > 0)
-            kill(s->member[r].child, SIGTERM);
-}
-
 static status run_members(sweep *s, failure *why)
 {
-    int next = 0, running = 0;
-    bool stopped = false;
-    while (running > 0 || (next < s->count && !interrupted)) {
-        for (; running < s->jobs && next < s->count && !interrupted; running++)
-            TRY(start_member(s, next++, why));
-        int wait_status;
-        pid_t child = waitpid(-1, &wait_status, 0);
-        if (interrupted && !stopped) {
-            stop_members(s);
-            stopped = true;
-        }
-        for (int r = 0; r < s->count && child > 0; r++)
-            if (s->member[r].child == child) {
-                note_end(s, r, wait_status);
-                running--;
-                break;
-            }
-        if (child < 0 && errno != EINTR)
-            return fail(why, STATUS_ERROR, "waiting for the runs of the sweep: %s", strerror(errno));
-    }
-    return STATUS_OK;
+    const crew runs = {.count = s->count, .jobs = s->jobs, .context = s, .log = log_of, .work = run_member, .ended = note_end};
+    return crew_run(&runs, why);
 }
 
 /* ---- the table ---- */
@@ -353,7 +255,7 @@ static status write_table(const sweep *s, failure *why)
 
 static status outcome(const sweep *s, failure *why)
 {
-    if (interrupted)
+    if (crew_interrupted())
         return fail(why, STATUS_INTERRUPTED, "interrupted after %d of %d runs; the runs under way have written checkpoints", s->done, s->count);
     int failed = 0, first = -1;
     for (int r = 0; r < s->count; r++)
@@ -384,24 +286,19 @@ static status prepare(sweep *s, failure *why)
     if (!s->member)
         return fail(why, STATUS_ERROR, "out of memory");
     TRY(check_scenes(s, &grains, why));
-    TRY(make_folder(o->run.out, why));
+    TRY(crew_folder(o->run.out, why));
     for (int r = 0; r < s->count; r++) {
         snprintf(s->member[r].result, sizeof s->member[r].result, "%s/%03d.h5", o->run.out, r + 1);
         snprintf(s->member[r].log, sizeof s->member[r].log, "%s/%03d.log", o->run.out, r + 1);
     }
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    s->jobs = o->jobs > 0 ? o->jobs : grains <= SMALL_BED && cores > 1 ? (int)cores : 1;
-    s->jobs = s->jobs > s->count ? s->count : s->jobs;
+    s->jobs = crew_jobs(o->jobs, grains, s->count);
     return STATUS_OK;
 }
 
 status sweep_run(const sweep_options *options, failure *why)
 {
     sweep s = {.options = options};
-    struct sigaction action = {.sa_handler = note_signal};
-    interrupted = 0;
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    crew_catch_signals();
     status result = prepare(&s, why);
     if (result == STATUS_OK)
         result = run_members(&s, why);

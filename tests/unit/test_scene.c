@@ -214,8 +214,8 @@ static void test_full_example(void **state)
     assert_false(s->stage[1].wall_change[0].motion_given);
     assert_true(s->output.every_s == 0.01 && s->output.observables_every_s == 0.001 && s->output.checkpoint_every_s == 0.5);
     assert_true(isnan(s->table.skin_m) && s->table.batch_steps == 0);
-    assert_int_equal(s->answer_count, 2);
-    assert_string_equal(s->answers[1], "particles[pair].items[0].velocity");
+    assert_int_equal(s->study.answer_count, 2);
+    assert_string_equal(s->study.answers[1], "particles[pair].items[0].velocity");
     assert_string_equal(s->path, "dir/scene.yaml");
     assert_int_equal(s->material[0].at.line, 13);
     assert_int_equal(s->material[0].at.column, 5);
@@ -644,7 +644,7 @@ static void test_set(void **state)
     s = read_good_with(base, (int)COUNT(created), created);
     assert_int_equal(s->guards.every_steps, 0);
     assert_true(s->guards.overlap_max == 0.3 && s->stage[1].step_s == 1e-6);
-    assert_string_equal(s->answers[0], "momentum");
+    assert_string_equal(s->study.answers[0], "momentum");
     scene_free(s);
 }
 
