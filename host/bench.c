@@ -12,7 +12,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#define STEP_S        1.0e-5
 #define WARM_UP_STEPS 200
 #define PROFILE_STEPS 50
 
@@ -35,7 +34,7 @@ static double seconds(void)
 
 bench_options bench_options_default(void)
 {
-    return (bench_options){.particles = 100000};
+    return (bench_options){.particles = 100000, .seconds = 240.0};
 }
 
 /* About 10^8 particle-steps, that is some seconds, but not too few or too many steps. */
@@ -146,7 +145,7 @@ static status measure(simulation *sim, const bench_options *options, bench_figur
     contact_sums contacts;
     int64_t steps = options->steps > 0 ? options->steps : default_steps(options->particles);
     TRY(simulation_begin_stage(sim, 0, why));
-    simulation_set_step(sim, STEP_S);
+    simulation_set_step(sim, BENCH_STEP_S);
     TRY(time_steps(sim, steps, out, why));
     TRY(observe_particle_sums(sim, &sums, why));
     TRY(observe_contact_sums(sim, &contacts, why));
@@ -164,8 +163,7 @@ static status measure(simulation *sim, const bench_options *options, bench_figur
 
 /* ---- reporting ---- */
 
-/* "rolling, conduction" */
-static void name_effects(unsigned effects, char *text, size_t size)
+void bench_name_effects(unsigned effects, char *text, size_t size)
 {
     const char *word = bed_effect_words;
     text[0] = '\0';
@@ -181,7 +179,7 @@ static void print_figures(const bench_figures *f, const bench_options *options)
 {
     double n = (double)f->particles;
     char effects[128];
-    name_effects(options->effects, effects, sizeof effects);
+    bench_name_effects(options->effects, effects, sizeof effects);
     printf("Settled bed of %lld grains%s%s%s in %s precision on %s\n", (long long)f->particles, effects[0] ? " with " : "", effects,
            effects[0] ? "," : "", options->mixed ? "mixed" : "double", f->device);
     printf("  %-28s%.4g million (%.4g ns each)\n", "particle-steps a second", 1e-6 * f->particle_steps_per_s,
@@ -203,9 +201,9 @@ static void print_figures(const bench_figures *f, const bench_options *options)
 static status write_json(const bench_figures *f, const bench_options *options, failure *why)
 {
     char effects[128];
-    name_effects(options->effects, effects, sizeof effects);
+    bench_name_effects(options->effects, effects, sizeof effects);
     json_t *root = json_pack("{s:s, s:s, s:I, s:I, s:f, s:b, s:s, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:i, s:i, s:i}", "device", f->device, "precision", options->mixed ? "mixed" : "double",
-                             "particles", (json_int_t)f->particles, "steps", (json_int_t)f->steps, "step_s", STEP_S, "rolling",
+                             "particles", (json_int_t)f->particles, "steps", (json_int_t)f->steps, "step_s", BENCH_STEP_S, "rolling",
                              (int)(options->effects & BED_ROLLING), "effects", effects, "wall_s", f->wall_s, "particle_steps_per_s", f->particle_steps_per_s, "bytes_per_particle",
                              f->bytes_per_particle, "rebuilds", (json_int_t)f->rebuilds, "rebuild_s", f->rebuild_s, "pair_stage_s",
                              f->pair_s, "particle_stage_s", f->particle_s, "contacts_per_particle", f->contacts_per_particle,
@@ -219,8 +217,7 @@ static status write_json(const bench_figures *f, const bench_options *options, f
     return whole ? STATUS_OK : fail(why, STATUS_ERROR, "%s: cannot be written: %s", options->json_path, strerror(errno));
 }
 
-/* Before minutes of work, not after. */
-static status check_writable(const char *path, failure *why)
+status bench_check_writable(const char *path, failure *why)
 {
     if (!path)
         return STATUS_OK;
@@ -251,8 +248,8 @@ status bench_bed(const bench_options *options, failure *why)
 {
     device device;
     bench_figures figures = {0};
-    TRY(check_writable(options->export_path, why));
-    TRY(check_writable(options->json_path, why));
+    TRY(bench_check_writable(options->export_path, why));
+    TRY(bench_check_writable(options->json_path, why));
     TRY(device_open(options->device, !options->mixed, &device, why));
     status result = run_bench(options, &device, &figures, why);
     device_close(&device);

@@ -3,6 +3,7 @@
 #define CLAST_HOST_BENCH_H
 #include "status.h"
 
+#include <stddef.h>
 #include <stdint.h>
 
 typedef struct bench_options {
@@ -12,6 +13,10 @@ typedef struct bench_options {
     bool mixed;              /* in mixed precision */
     const char *export_path; /* the bed as CSV, or NULL */
     const char *json_path;   /* the figures as JSON, or NULL */
+    const char *csv_path;    /* the same as CSV, or NULL; not of a bed */
+    double seconds;          /* that `effects` may take about */
+    const char *only;        /* of the cases of `effects` those whose name has one of these words, by commas; NULL: all */
+    const char *scenes;      /* folder that `effects` writes the scenes of its cases to, and measures nothing; or NULL */
     const char *device;      /* as device_choose */
     const char *kernels;     /* directory of kernels instead of the embedded ones, or NULL */
 } bench_options;
@@ -19,5 +24,16 @@ typedef struct bench_options {
 bench_options bench_options_default(void);
 /* Makes or takes from the cache a settled bed, times it, and writes the figures to standard output. */
 status bench_bed(const bench_options *options, failure *why);
+/* bench_effects.c: what every law adds to a step of the bed, alone and on top of those before it. */
+status bench_effects(const bench_options *options, failure *why);
+/* bench_kernels.c: time and bytes of every kernel. */
+status bench_kernels(const bench_options *options, failure *why);
+
+/* Step of the bed, s. */
+#define BENCH_STEP_S 1.0e-5
+/* Before minutes of work, not after. */
+status bench_check_writable(const char *path, failure *why);
+/* "rolling, conduction" */
+void bench_name_effects(unsigned effects, char *text, size_t size);
 
 #endif

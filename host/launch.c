@@ -295,7 +295,10 @@ status launch_run(simulation *sim, cl_kernel kernel, const char *name, int64_t i
     if (items <= 0)
         return STATUS_OK;
     size_t local = (size_t)group, global = ((size_t)items + local - 1) / local * local;
-    TRY_CL(clEnqueueNDRangeKernel(sim->device->queue, kernel, 1, NULL, &global, &local, 0, NULL, NULL), name);
+    cl_event event;
+    TRY_CL(clEnqueueNDRangeKernel(sim->device->queue, kernel, 1, NULL, &global, &local, 0, NULL, sim->watch ? &event : NULL), name);
+    if (sim->watch)
+        sim->watch->seen(sim->watch->context, name, kernel, global, event);
     return STATUS_OK;
 }
 

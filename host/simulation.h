@@ -116,12 +116,19 @@ typedef struct beam_tables {
     double delivered; /* J */
 } beam_tables;
 
+/* Who is told of every launch of a kernel, with an event to release; for benchmarks. */
+typedef struct launch_watch {
+    void (*seen)(void *context, const char *name, cl_kernel kernel, size_t items, cl_event event);
+    void *context;
+} launch_watch;
+
 typedef struct simulation {
     const scene *scene;
     device *device;
     bool mixed;             /* precision of the device's numbers; the host's are double */
     double origin[3];       /* of the device's positions; 0 in double precision */
     char *kernels_directory;
+    const launch_watch *watch; /* NULL: nobody */
     live_laws live, all; /* of the stage, and the union over stages */
     int stage;
     cl_program program, table_program;
@@ -202,6 +209,8 @@ status simulation_pose_now(simulation *sim, failure *why);
 /* store.c: arrays and kernels by name */
 status store_buffer(simulation *sim, cl_mem *mem, uint64_t bytes, const char *what, failure *why);
 void store_release(simulation *sim, cl_mem *mem, uint64_t bytes);
+/* What the core needs, and what the live laws of any stage ask for, each once; nothing else. */
+int store_needs(const live_laws *all, const field **out, int max);
 status store_fields(simulation *sim, failure *why);
 stored_field *store_find(simulation *sim, const char *name);
 /* Bytes of a number of the type on the device. */

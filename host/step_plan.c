@@ -233,10 +233,14 @@ static status enqueue_piece(const simulation *sim, cl_command_queue queue, const
     const char *name = piece->pairs ? "pair_stage" : "particle_stage";
     cl_kernel kernel = launch_kernel(sim, name);
     size_t local = CLAST_BLOCK, items = (size_t)piece->count * local;
+    cl_event watched;
+    bool watch = sim->watch && !event;
     launch->first_group = piece->first;
     launch->force_shift = piece->force_shift;
     TRY(launch_pass(kernel, name, launch, why));
-    TRY_CL(clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &items, &local, 0, NULL, event), name);
+    TRY_CL(clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &items, &local, 0, NULL, watch ? &watched : event), name);
+    if (watch)
+        sim->watch->seen(sim->watch->context, name, kernel, items, watched);
     return STATUS_OK;
 }
 

@@ -57,8 +57,6 @@ uint64_t field_bytes(const simulation *sim, const field *field)
 
 static status add_field(simulation *sim, const field *field, failure *why)
 {
-    if (!field || field->extent == PER_SCENE || store_find(sim, field->name))
-        return STATUS_OK;
     stored_field *stored = &sim->field[sim->field_count];
     TRY(store_buffer(sim, &stored->mem, field_bytes(sim, field), field->name, why));
     stored->field = field;
@@ -66,17 +64,35 @@ static status add_field(simulation *sim, const field *field, failure *why)
     return store_fill(sim, stored->mem, field_bytes(sim, field), why);
 }
 
-/* What the core needs, and what the live laws of any stage ask for; nothing else. */
-status store_fields(simulation *sim, failure *why)
+static void need_field(const field *field, const struct field **out, int *count, int max)
+{
+    bool known = !field || field->extent == PER_SCENE;
+    for (int f = 0; f < *count && !known; f++)
+        known = strcmp(out[f]->name, field->name) == 0;
+    if (!known && *count < max)
+        out[(*count)++] = field;
+}
+
+int store_needs(const live_laws *all, const field **out, int max)
 {
     const field *const core[] = {&field_position, &field_velocity, &field_radius, &field_mass, &field_id, &field_force};
+    int count = 0;
     for (size_t f = 0; f < sizeof core / sizeof *core; f++)
-        TRY(add_field(sim, core[f], why));
+        need_field(core[f], out, &count, max);
     for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
-        for (int f = 0; sim->all.law[slot] && f < LAW_ARGUMENTS_MAX; f++) {
-            TRY(add_field(sim, sim->all.law[slot]->pair_fields[f], why));
-            TRY(add_field(sim, sim->all.law[slot]->particle_fields[f], why));
+        for (int f = 0; all->law[slot] && f < LAW_ARGUMENTS_MAX; f++) {
+            need_field(all->law[slot]->pair_fields[f], out, &count, max);
+            need_field(all->law[slot]->particle_fields[f], out, &count, max);
         }
+    return count;
+}
+
+status store_fields(simulation *sim, failure *why)
+{
+    const field *needed[SIMULATION_FIELDS_MAX];
+    int count = store_needs(&sim->all, needed, SIMULATION_FIELDS_MAX);
+    for (int f = 0; f < count; f++)
+        TRY(add_field(sim, needed[f], why));
     return STATUS_OK;
 }
 

@@ -8,26 +8,34 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { KEY_PRECISION = 256, KEY_ROLLING, KEY_EFFECTS, KEY_EXPORT, KEY_JSON };
+enum { KEY_PRECISION = 256, KEY_ROLLING, KEY_EFFECTS, KEY_EXPORT, KEY_JSON, KEY_CSV, KEY_SECONDS, KEY_ONLY, KEY_SCENES };
+
+/* A benchmark, and the options that it takes beside device, kernels and number of particles. */
+typedef struct benchmark {
+    const char *name;
+    status (*run)(const bench_options *options, failure *why);
+} benchmark;
+
+static const benchmark benchmarks[] = {{"bed", bench_bed}, {"effects", bench_effects}, {"kernels", bench_kernels}};
+#define BENCHMARKS (sizeof benchmarks / sizeof *benchmarks)
+
+static const benchmark *find_benchmark(const struct argp_state *state, const char *what)
+{
+    if (!what)
+        option_refuse(state, "which benchmark? There are `bed`, `effects` and `kernels`");
+    for (size_t n = 0; n < BENCHMARKS; n++)
+        if (strcmp(benchmarks[n].name, what) == 0)
+            return &benchmarks[n];
+    option_refuse(state, "there is no benchmark `%s`; there are `bed`, `effects` and `kernels`", what);
+    return NULL;
+}
 
 typedef struct bench_input {
     const char *what;
+    const benchmark *chosen;
     bench_options options;
     device_options device;
 } bench_input;
-
-static void check_what(const struct argp_state *state, const char *what)
-{
-    static const char *const known[] = {"bed", "effects", "kernels", "tune"};
-    if (!what)
-        option_refuse(state, "which benchmark? This version has `bed`");
-    if (strcmp(what, "bed") == 0)
-        return;
-    const char *nearest = word_nearest(what, known, 4);
-    if (nearest && strcmp(nearest, what) == 0)
-        option_refuse(state, "the benchmark `%s` is not in this version, which has `bed`", what);
-    option_refuse(state, "there is no benchmark `%s`; this version has `bed`", what);
-}
 
 static void read_effects_option(const struct argp_state *state, const char *argument, unsigned *effects)
 {
@@ -74,11 +82,23 @@ static error_t parse_bench(int key, char *argument, struct argp_state *state)
     case KEY_JSON:
         input->options.json_path = argument;
         return 0;
+    case KEY_CSV:
+        input->options.csv_path = argument;
+        return 0;
+    case KEY_SECONDS:
+        input->options.seconds = (double)option_count(state, "--seconds", argument, 1, 1000000);
+        return 0;
+    case KEY_ONLY:
+        input->options.only = argument;
+        return 0;
+    case KEY_SCENES:
+        input->options.scenes = argument;
+        return 0;
     case ARGP_KEY_ARG:
         option_only(state, &input->what, argument);
         return 0;
     case ARGP_KEY_END:
-        check_what(state, input->what);
+        input->chosen = find_benchmark(state, input->what);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -93,14 +113,18 @@ static const struct argp_option bench_option[] = {
     {"effects", KEY_EFFECTS, "A,B,...", 0, "With these on top of contact and friction, of rolling, conduction, convection, radiation", 0},
     {"export", KEY_EXPORT, "FILE.csv", 0, "Write the bed as it is before the warm-up", 0},
     {"json", KEY_JSON, "FILE.json", 0, "Write the figures as JSON", 0},
+    {"csv", KEY_CSV, "FILE.csv", 0, "Write them as CSV (effects, kernels)", 0},
+    {"seconds", KEY_SECONDS, "S", 0, "Time that `effects` may take, about 240", 0},
+    {"only", KEY_ONLY, "WORD,...", 0, "Of the cases of `effects` those that have one of these words in their name", 0},
+    {"scenes", KEY_SCENES, "FOLDER", 0, "Write the scenes of `effects` there and measure nothing", 0},
     {0},
 };
 static const struct argp_child bench_children[] = {{.argp = &device_options_argp}, {0}};
 static const struct argp bench_argp = {
     .options = bench_option,
     .parser = parse_bench,
-    .args_doc = "bed",
-    .doc = "Time a settled bed in a box with five frictional walls.\vA settled bed of up to 20,000 particles is made once and kept in"
+    .args_doc = "bed|effects|kernels",
+    .doc = "Time a settled bed in a box with five frictional walls: a step, what every law adds to it, or every kernel.\vA settled bed of up to 20,000 particles is made once and kept in"
            " ${XDG_CACHE_HOME:-~/.cache}/clast; larger beds are tiled from it.",
     .children = bench_children,
 };
@@ -113,5 +137,5 @@ status command_bench(int argc, char **argv, failure *why)
         return fail(why, STATUS_ERROR, "%s", strerror(error));
     input.options.device = input.device.device;
     input.options.kernels = input.device.kernels;
-    return bench_bed(&input.options, why);
+    return input.chosen->run(&input.options, why);
 }

@@ -109,7 +109,7 @@ class Command(unittest.TestCase):
             (["check"], "SCENE.yaml"),
             (["bench"], "`bed`"),
             (["bench", "bad"], "`bad`"),
-            (["bench", "kernels"], "not in this version"),
+            (["bench", "effects", "--seconds", "0"], "`0`"),
             (["bench", "bed", "--particles", "many"], "`many`"),
             (["bench", "bed", "--particles", "99"], "from 100 to"),
             (["bench", "bed", "--particles", "1.5"], "`1.5`"),

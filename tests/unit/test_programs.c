@@ -1,5 +1,6 @@
 /* The programs that a scene can be assembled into: every law alone, every pair of laws and all at once are clean OpenCL C 1.2, a dozen of
  * them on the device with the arguments that the descriptors name; and the structs that host and kernels share have one layout. */
+#include "every_law.h"
 #include "simulation_case.h"
 
 #include "laws/laws.h"
@@ -7,65 +8,6 @@
 
 #include <sys/wait.h>
 #include <unistd.h>
-
-static const law *const every_law[] = {
-    &law_precision_mixed,
-    &law_composition_several,
-    &law_periodic_box,
-    &law_motion_groups,
-    &law_rotation_spin,
-    &law_hertz,
-    &law_linear,
-    &law_power,
-    &law_bonding_always,
-    &law_bonding_at_time,
-    &law_bonding_scalar,
-    &law_bonding_temperature,
-    &law_adhesion,
-    &law_parallel,
-    &law_jkr,
-    &law_dmt,
-    &law_sjkr,
-    &law_slip_single,
-    &law_slip_two,
-    &law_mindlin,
-    &law_coulomb_linear,
-    &law_elastic_plastic,
-    &law_constant_torque,
-    &law_walls_planes,
-    &law_walls_finite,
-    &law_walls_round,
-    &law_local_damping,
-    &law_viscous_damping,
-    &law_orientation_quaternion,
-    &law_velocity_verlet,
-    &law_temperature_grains,
-    &law_temperature_pairs,
-    &law_substance_several,
-    &law_overlap_area,
-    &law_batchelor_obrien,
-    &law_pipe_network,
-    &law_wall_temperature,
-    &law_wall_flux,
-    &law_environment_uniform,
-    &law_environment_profile,
-    &law_newton,
-    &law_still_gas,
-    &law_nusselt,
-    &law_stefan_boltzmann,
-    &law_volumetric,
-    &law_laser,
-    &law_burner,
-    &law_thermal_groups,
-    &law_heat_tally,
-    &law_exponential_softening,
-    &law_softening_tracked,
-    &law_fraction,
-    &law_dissipation_tracked,
-    &law_dissipation_synchronous,
-    &law_ledger_energies,
-};
-#define LAWS (sizeof every_law / sizeof *every_law)
 
 /* What laws read of a scene: sources are as many as it lists. */
 static effect sources[] = {{.law = &law_laser, .beam = {.direction = {0, 0, -1}}}, {.law = &law_burner, .beam = {.direction = {1, 0, 0}}}};
