@@ -6,7 +6,7 @@
 #include <string.h>
 
 const law *const laws[] = {&law_hertz,        &law_linear,        &law_mindlin, &law_coulomb_linear, &law_elastic_plastic,
-                           &law_constant_torque, &law_power, &law_adhesion, &law_parallel, &law_jkr, &law_dmt, &law_sjkr,
+                           &law_constant_torque, &law_power, &law_adhesion, &law_parallel, &law_sintering, &law_jkr, &law_dmt, &law_sjkr,
                            &law_local_damping, &law_viscous_damping, &law_overlap_area,
                            &law_batchelor_obrien, &law_pipe_network, &law_newton,
                            &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, &law_laser, &law_burner, &law_exponential_softening, &law_fraction, NULL};
@@ -76,7 +76,9 @@ const property *const *interaction_properties(void)
                                           &property_bond_equilibrium_strain, &property_bond_exponent, &property_bond_damping,
                                           &property_bond_threshold, &property_bond_tensile_strength, &property_bond_shear_strength,
                                           &property_bond_youngs_modulus, &property_bond_shear_modulus, &property_bond_radius_ratio,
-                                          &property_bond_gap_ratio, &property_work_of_adhesion,
+                                          &property_bond_gap_ratio, &property_surface_energy, &property_boundary_diffusion,
+                                          &property_atomic_volume, &property_sintering_activation, &property_neck_ratio_least, &property_neck_ratio_most,
+                                          &property_work_of_adhesion,
                                           NULL};
     return all;
 }

@@ -61,7 +61,7 @@ typedef struct law_option {
 
 #define LAW_OPTIONS_MAX 12
 #define LAW_ARGUMENTS_MAX 8
-#define LAW_PARAMETERS_MAX 8
+#define LAW_PARAMETERS_MAX 12
 #define LAW_PROPERTIES_MAX 8
 #define LAW_FILES_MAX 3
 

@@ -1,4 +1,5 @@
 /* Sums, contacts and fields, read from the device when they are due. */
+#include "laws/laws.h"
 #include "simulation.h"
 
 #include <math.h>
@@ -217,6 +218,7 @@ status observe_contact_sums(simulation *sim, contact_sums *out, failure *why)
 typedef struct record_arrays {
     int32_t *owner, *other, *id;
     double *bonded; /* NULL where no bond law is live */
+    double *growth; /* of necks that sinter; NULL without */
     record_order order;
     double *overlap, *radius, *force[3], *torque[3], *heat, *position; /* position: [grain][3]; heat: NULL without conduction */
 } record_arrays;
@@ -228,6 +230,7 @@ static void free_records(record_arrays *r)
     free(r->id);
     free(r->overlap);
     free(r->bonded);
+    free(r->growth);
     free(r->order.record);
     free(r->radius);
     free(r->position);
@@ -259,6 +262,8 @@ static status read_records(simulation *sim, record_arrays *r, failure *why)
     stored_field *bonded = sim->live.law[SLOT_BOND] ? store_find(sim, "bonded") : NULL;
     if (bonded)
         TRY(read_component(sim, bonded->mem, 0, &r->bonded, why));
+    if (sim->live.law[SLOT_BOND] == &law_sintering)
+        TRY(read_component(sim, store_find(sim, "neck_growth")->mem, 0, &r->growth, why));
     TRY(run_on_records(sim, "pair_probe", why));
     TRY(read_ints(sim, t->owner[t->now], t->record_count, &r->owner, why));
     TRY(read_ints(sim, t->other[t->now], t->record_count, &r->other, why));
@@ -323,6 +328,8 @@ static live_contact make_contact(const simulation *sim, const record_arrays *r, 
         }
     }
     contact.area = M_PI * effective * contact.overlap;
+    if (r->growth && contact.bonded) /* of the neck, whose radius over 2 r* is the sixth root */
+        contact.area = 4.0 * M_PI * effective * effective * cbrt(r->growth[k]);
     contact.heat = r->heat ? sign * r->heat[k] : 0.0;
     for (int c = 0; c < 3; c++)
         contact.force[c] = sign * r->force[c][k];

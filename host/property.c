@@ -65,6 +65,14 @@ const property property_bond_shear_modulus = {"bond_shear_modulus_pa", 0, 1e15, 
 const property property_bond_radius_ratio = {"bond_radius_ratio", 0, 1, true, 1, NULL, "radius of the bond, of the smaller grain's"};
 const property property_bond_gap_ratio = {"bond_gap_ratio", 0, 1, false, 1e-6, NULL,
                                           "gap up to which a bond is made, of the smaller grain's radius"};
+const property property_surface_energy = {"surface_energy_j_m2", 0, 1e6, true, NAN, NULL, "energy of the free surface, which drives sintering"};
+const property property_boundary_diffusion = {"boundary_diffusion_m3_s", 0, 1, true, NAN, NULL,
+                                              "diffusion along the boundary of two grains times its thickness, delta D_0, before the Arrhenius factor"};
+const property property_atomic_volume = {"atomic_volume_m3", 0, 1e-20, true, NAN, NULL, "volume of an atom, for the diffusion that sinters"};
+const property property_sintering_activation = {"activation_energy_j_mol", 0, 1e7, false, NAN, NULL, "activation energy of that diffusion"};
+const property property_neck_ratio_least = {"neck_radius_ratio_least", 1e-3, 1, false, 0.01, NULL,
+                                            "radius with which a neck starts at least, of the smaller grain's"};
+const property property_neck_ratio_most = {"neck_radius_ratio_most", 1e-3, 1, false, 0.5, NULL, "radius up to which a neck grows, of the smaller grain's"};
 const property property_work_of_adhesion = {"work_of_adhesion_j_m2", 0, 1e6, false, NAN, NULL,
                                             "work of adhesion of two surfaces; 0: this pair does not cohere"};
 const property property_bond_shear_strength = {"bond_shear_strength_pa", 0, 1e29, true, 1e30, NULL,

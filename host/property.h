@@ -13,7 +13,8 @@ extern const property property_repulsion_stiffness, property_repulsion_exponent;
 extern const property property_bond_stiffness, property_bond_equilibrium_overlap, property_bond_normalised_stiffness,
     property_bond_equilibrium_strain, property_bond_exponent, property_bond_damping, property_bond_threshold, property_bond_tensile_strength,
     property_bond_shear_strength, property_bond_youngs_modulus, property_bond_shear_modulus, property_bond_radius_ratio, property_bond_gap_ratio,
-    property_work_of_adhesion;
+    property_work_of_adhesion, property_surface_energy, property_boundary_diffusion, property_atomic_volume, property_sintering_activation,
+    property_neck_ratio_least, property_neck_ratio_most;
 
 extern const property property_softening_temperature, property_softening_rate, property_modulus_floor;
 

@@ -65,6 +65,19 @@ INLINE vec3 turn_by(vec3 v, vec3 w)
     return add_scaled(v, weight, cross3(h, add(v, cross3(h, v))));
 }
 
+/* Cube root from square roots (1/4 + 1/16 + 1/64 is nearly 1/3) and three of Halley's steps; no call that would end vectorisation. */
+INLINE real cube_root_step(real r, real x)
+{
+    real cube = r * r * r;
+    return r * (cube + R(2.0) * x) / (R(2.0) * cube + x);
+}
+
+INLINE real cube_root(real x)
+{
+    real f = sqrt(sqrt(x)), g = sqrt(sqrt(f)), h = sqrt(sqrt(g));
+    return cube_root_step(cube_root_step(cube_root_step(f * g * h, x), x), x);
+}
+
 /* Three exact numbers in a row, as reals and with all their bits; a macro, since they may stand in private or in global memory. */
 #define from3(a) v3(number((a)[0]), number((a)[1]), number((a)[2]))
 #define PRECISE3(a) precise3_of(precise_load((a)[0]), precise_load((a)[1]), precise_load((a)[2]))
@@ -110,6 +123,7 @@ typedef struct contact {
     real arm_i, arm_j;   /* of the friction force */
     vec3 slip;           /* tangential relative velocity of the surfaces */
     vec3 spin_i, spin_j;
+    real neck;           /* radius of a neck of solid material between the two, m; 0 without */
     real touch;          /* overlap whether or not the two act on each other with forces, m */
     real modulus_i, modulus_j; /* factors of Young's moduli; 1 at a wall */
     real temperature_i, temperature_j; /* K; of a wall: that of the grain */

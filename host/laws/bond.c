@@ -48,7 +48,7 @@ adhesion adhesion_of(const contact_class *class)
 bool pair_bonds(const contact_class *class)
 {
     const effect *bond = scene_effect(class->scene, -1, SLOT_BOND);
-    if (bond && bond->law == &law_parallel)
+    if (bond && (bond->law == &law_parallel || bond->law == &law_sintering))
         return interaction_value(class, &property_bond_youngs_modulus) > 0.0;
     return adhesion_of(class).coefficient > 0.0;
 }
@@ -117,7 +117,7 @@ const law law_bonding_temperature = {
 
 bool bonding_reads_temperature(const law *bond, const double *option)
 {
-    return bond && (int)option[BOND_CRITERION] >= BOND_BOTH_ABOVE;
+    return bond && (bond->reads_temperature || (int)option[BOND_CRITERION] >= BOND_BOTH_ABOVE);
 }
 
 const law *bonding_of(const law *bond, const double *option)
@@ -227,6 +227,13 @@ static void derive_parallel(const contact_class *class, const double *option, do
     parameter[7] = young > 0.0 ? sqrt(parameter[1] / young) : 0.0;
 }
 
+/* The options a bond law has by itself stand behind those of all. */
+static void parallel_constants(const double *option, char *text, size_t size)
+{
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "#define PARALLEL_LIQUID %d\n", option[BOND_OWN] != 0.0);
+}
+
 static double parallel_reach(const contact_class *class, double radius)
 {
     return pair_bonds(class) ? interaction_value(class, &property_bond_gap_ratio) * radius : 0.0;
@@ -239,12 +246,65 @@ const law law_parallel = {
            "any distance. A pair bonds where `bond_youngs_modulus_pa` is above 0.",
     .source = "Potyondy and Cundall 2004, with dampers",
     .kernel_file = "effect/bond_parallel.cl",
-    .options = {BOND_OPTIONS},
+    .more_files = {"effect/bond_beam.cl"},
+    .options = {BOND_OPTIONS,
+                {"while_met", "solid|liquid", 0, 0, 0,
+                 "what a bond is while its criterion is met: as solid as ever, or liquid (it carries nothing, and sets for good, at rest where it then "
+                 "is, once the criterion is no longer met, as a molten neck that has cooled)"}},
     .pair_fields = {&field_bonded, &field_bond_gap, &field_bond_shear, &field_bond_turn},
     .parameters = {"PARALLEL_YOUNG", "PARALLEL_SHEAR", "PARALLEL_RADIUS", "PARALLEL_DAMPING", "PARALLEL_TENSILE", "PARALLEL_SHEAR_STRENGTH",
                    "PARALLEL_GAP", "PARALLEL_ROOT"},
     .derive = derive_parallel,
+    .constants = parallel_constants,
     .reach = parallel_reach,
     .keeps_bonds = true,
     .turns = true,
+};
+
+/* ---- sintering ---- */
+
+#define BOLTZMANN 1.380649e-23 /* J/K */
+#define GAS       8.31446261815324 /* J/(mol K) */
+
+static const field field_neck_growth = {"neck_growth", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, "", "sixth power of the neck's radius over 2 r*"};
+static const field field_neck_growth_low = {"neck_growth_low", PER_RECORD, FIELD_REAL, 1, FIELD_HISTORY, "", "what rounding leaves of it"};
+
+static void derive_sintering(const contact_class *class, const double *option, double *parameter)
+{
+    (void)option;
+    double young = interaction_value(class, &property_bond_youngs_modulus), shear = interaction_value(class, &property_bond_shear_modulus);
+    double xi = interaction_value(class, &property_bond_damping), tension = interaction_value(class, &property_surface_energy);
+    double mobility = interaction_value(class, &property_atomic_volume) * interaction_value(class, &property_boundary_diffusion) / BOLTZMANN;
+    parameter[0] = young;
+    parameter[1] = isnan(shear) ? 0.4 * young : shear;
+    parameter[2] = isnan(xi) ? 0.0 : 2.0 * xi;
+    parameter[3] = interaction_value(class, &property_bond_tensile_strength);
+    parameter[4] = interaction_value(class, &property_bond_shear_strength);
+    parameter[5] = young > 0.0 ? sqrt(parameter[1] / young) : 0.0;
+    parameter[6] = 3.375 * tension * mobility;
+    parameter[7] = interaction_value(class, &property_sintering_activation) / GAS;
+    parameter[8] = 2.25 * M_PI * tension;
+    parameter[9] = interaction_value(class, &property_neck_ratio_least);
+    parameter[10] = interaction_value(class, &property_neck_ratio_most);
+    parameter[11] = interaction_value(class, &property_bond_gap_ratio);
+}
+
+const law law_sintering = {
+    .name = "sintering",
+    .slot = SLOT_BOND,
+    .doc = "A neck that grows between hot grains by diffusion along their boundary, a^6 in proportion to time, draws them together, conducts, and carries "
+           "tension, shear, bending and torsion up to its strength. A pair bonds where `bond_youngs_modulus_pa` is above 0.",
+    .source = "Bouvier and McMeeking 1996, Parhami and McMeeking 1998; neck of Coble 1958",
+    .kernel_file = "effect/bond_sintering.cl",
+    .more_files = {"effect/bond_beam.cl"},
+    .options = {BOND_OPTIONS},
+    .interaction_needs = {&property_surface_energy, &property_boundary_diffusion, &property_atomic_volume, &property_sintering_activation},
+    .pair_fields = {&field_bonded, &field_bond_gap, &field_bond_shear, &field_bond_turn, &field_neck_growth, &field_neck_growth_low},
+    .parameters = {"SINTER_YOUNG", "SINTER_SHEAR", "SINTER_DAMPING", "SINTER_TENSILE", "SINTER_SHEAR_STRENGTH", "SINTER_ROOT", "SINTER_RATE",
+                   "SINTER_ACTIVATION", "SINTER_PULL", "SINTER_LEAST", "SINTER_MOST", "SINTER_GAP"},
+    .derive = derive_sintering,
+    .reach = parallel_reach,
+    .keeps_bonds = true,
+    .turns = true,
+    .reads_temperature = true,
 };

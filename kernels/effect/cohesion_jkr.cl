@@ -20,19 +20,6 @@ typedef struct cohesion_state {
     real neck; /* 1 while there is contact */
 } cohesion_state;
 
-/* Cube root from square roots (1/4 + 1/16 + 1/64 is nearly 1/3) and three of Halley's steps; no call that would end vectorisation. */
-INLINE real jkr_halley(real r, real x)
-{
-    real cube = r * r * r;
-    return r * (cube + R(2.0) * x) / (R(2.0) * cube + x);
-}
-
-INLINE real jkr_cube_root(real x)
-{
-    real f = sqrt(sqrt(x)), g = sqrt(sqrt(f)), h = sqrt(sqrt(g));
-    return jkr_halley(jkr_halley(jkr_halley(f * g * h, x), x), x);
-}
-
 typedef struct jkr_neck {
     real critical, radius; /* a_c, a; 0 where there is no contact */
     bool holds;
@@ -48,7 +35,7 @@ INLINE real jkr_newton(real z, real wanted)
 INLINE jkr_neck jkr_of(const contact *c, real before)
 {
     jkr_neck k;
-    real root = jkr_cube_root(c->radius_eff);
+    real root = cube_root(c->radius_eff);
     k.critical = c->value[JKR_LENGTH] * root * root;
     bool sticky = k.critical > R(0.0);
     real scale2 = sticky ? k.critical * k.critical : R(1.0);

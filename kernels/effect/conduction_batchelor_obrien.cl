@@ -1,5 +1,5 @@
 /* conduction: H = 2 a k between two grains, k the harmonic mean, and H = 4 a k at a wall, an isothermal half-space (Batchelor & O'Brien 1977;
- * HC Eqs. 9-12 with the mean as settled in docs/theory.md); a = sqrt(r* d) is the radius of a Hertz contact.
+ * HC Eqs. 9-12 with the mean as settled in docs/theory.md); a = sqrt(r* d) is the radius of a Hertz contact, or that of a neck.
  * Reads CONDUCTION_STRENGTH, which holds the conductivities and the factors of the soft modulus. */
 #ifndef CONDUCTION_STRENGTH
 #define CONDUCTION_STRENGTH 0
@@ -7,7 +7,8 @@
 
 INLINE real conduction_conductance(const contact *c)
 {
-    return c->value[CONDUCTION_STRENGTH] * sqrt(c->radius_eff * c->touch);
+    real a = c->neck > R(0.0) ? c->neck : sqrt(c->radius_eff * c->touch);
+    return c->value[CONDUCTION_STRENGTH] * a;
 }
 
 INLINE real conduction_wall_conductance(const contact *c)

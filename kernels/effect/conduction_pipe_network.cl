@@ -24,11 +24,12 @@ INLINE real conduction_pipe(real k, real radius, real a)
     return R(3.14159265358979324) * k * depth / drop;
 }
 
-/* The two spheres cut each other in a circle of radius a, as in TM Eqs. 33-34. */
+/* The two spheres cut each other in a circle of radius a, as in TM Eqs. 33-34, or are joined by a neck of that radius. */
 INLINE real conduction_pipes(const contact *c, real d)
 {
     real ri = c->radius_i, rj = c->radius_j, both = ri + rj, distance = both - d;
     real square = d * (R(2.0) * ri - d) * (R(2.0) * rj - d) * (R(2.0) * both - d) / (R(4.0) * distance * distance);
+    square = c->neck > R(0.0) ? c->neck * c->neck : square;
     bool touches = square > R(0.0);
     real a = sqrt(touches ? square : ri * rj);
     real i = conduction_pipe(c->value[CONDUCTION_K_I], ri, a), j = conduction_pipe(c->value[CONDUCTION_K_J], rj, a);

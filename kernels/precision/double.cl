@@ -26,6 +26,18 @@ INLINE precise precise_from(real a)
     return a;
 }
 
+/* From and to two reals: the number rounded, and what that leaves, which is 0 here. */
+INLINE precise precise_of(real hi, real lo)
+{
+    return hi + lo;
+}
+
+INLINE real precise_rest(precise a)
+{
+    (void)a;
+    return R(0.0);
+}
+
 INLINE precise precise_from_int(int a)
 {
     return a;

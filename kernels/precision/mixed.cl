@@ -61,6 +61,11 @@ INLINE real rounded(precise a)
     return a.hi;
 }
 
+INLINE real precise_rest(precise a)
+{
+    return a.lo;
+}
+
 /* a + b where |a| >= |b|, or a = 0. */
 INLINE precise precise_join(real a, real b)
 {

@@ -19,6 +19,7 @@ INLINE void contact_complete(contact *c)
     bool touches = c->overlap > R(0.0);
     /* one division for both reciprocals */
     real inverse = R(1.0) / ((touches ? a : R(1.0)) * c->radius_eff);
+    c->neck = R(0.0);
     c->contact_radius = a;
     c->inertia_root = sqrt(c->mass_eff * a);
     c->contact_inverse = touches ? inverse * c->radius_eff : R(0.0);

@@ -13,6 +13,9 @@ __kernel void heat_conductances(const clast_launch launch PAIR_DECLARE)
         contact_of_grains(&launch, k, &c PAIR_PASS);
     c.dt = R(0.0);
     c.value = contact_constants + c.class * CONTACT_CONSTANTS;
+    bond_state bond;
+    BOND_LOAD(&launch, k, bond);
+    bond_geometry(&c, &bond); /* a neck may conduct */
     real conductance = wall ? WALL_HEAT_CONDUCTS(&launch, other[k]) * conduction_wall_conductance(&c) : conduction_conductance(&c);
     CONDUCTION_STORE(&launch, k, conductance);
 }

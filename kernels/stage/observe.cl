@@ -266,6 +266,8 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
     real spin_both = wall ? spin_i : spin_i + R(1.0) / (R(0.4) * c.mass_j * c.radius_j * c.radius_j);
     real turning = limit_step(R(3.5) * t.stiffness * inverse + spin_both * r.stiffness, R(3.5) * t.damping * inverse + spin_both * r.damping);
     c.touch = c.overlap;
+    c.slip = c.past_slip = c.spin_i = c.spin_j = c.past_spin_i = c.past_spin_j = c.n = v3(R(0.0), R(0.0), R(0.0));
+    bond_geometry(&c, &bond);
     real conductance = wall ? conduction_wall_conductance(&c) : conduction_conductance(&c);
     result[0] = precise_store(precise_from(c.overlap));
     result[1] = precise_store(precise_from(limit_step(a.stiffness * inverse, a.damping * inverse)));

@@ -184,6 +184,68 @@ static void test_wall(void **state)
     }
 }
 
+/* ---- necks that melt and set ---- */
+
+/* A grain flies off a held one at v, bonded by a neck that is liquid above 1000 K. `kelvin`: temperature in time, of both. */
+static physics_case drawn_neck(const char *kelvin, const char *option, double v)
+{
+    text t = {0};
+    put(&t, "effects: [{slot: normal, law: hertz}, {slot: bond, law: parallel, criterion: both_above, while_met: %s}]\n", option);
+    put(&t, "materials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: 1.0e9, poissons_ratio: 0.2, specific_heat_j_kgk: 500}]\n", density);
+    put(&t, "interactions: [{between: default, normal_damping_ratio: 0, bond_youngs_modulus_pa: 1.0e4, bond_damping_ratio: 0, bond_gap_ratio: 0.1, "
+            "bond_threshold: 1000}]\ncontact_table: {skin_m: 2.0e-5}\nparticles:\n");
+    put(&t, "  - {name: held, material: m, generator: list, motion: fixed, thermal: prescribed, temperature_k: %s, items: [{radius_m: %g, position_m: [0, 0, "
+            "0]}]}\n",
+        kelvin, radius);
+    put(&t, "  - {name: free, material: m, generator: list, thermal: prescribed, temperature_k: %s, items: [{radius_m: %g, position_m: [%.17g, 0, 0], "
+            "velocity_m_s: [%.17g, 0, 0]}]}\n",
+        kelvin, radius, 2.05 * radius, v);
+    return case_open(&t);
+}
+
+static double gap_of(physics_case *c)
+{
+    return case_get(c, "position", 1, 0) - 2.0 * radius;
+}
+
+static void test_neck_melts_and_sets(void **state)
+{
+    (void)state;
+    const double v = 0.01, gap = 0.05 * radius, dt = 1e-6;
+    /* Solid from the start: it swings about where it was made. */
+    double omega = sqrt(1.0e4 * area() / (2.0 * radius + gap) / sphere_mass(density, radius));
+    physics_case c = drawn_neck("1100", "solid", v);
+    case_run(&c, lround(0.5 * PI / omega / dt), dt);
+    RELATIVE(gap_of(&c) - gap, v / omega, 2e-3);
+    case_close(&c);
+    /* Liquid for 2 ms, in which the grain flies freely; then it sets, and swings about where it is. */
+    c = drawn_neck("{time_s: [0, 4.0e-3, 5.0e-3, 6.0e-3], value: [1100, 900, 900, 1100]}", "liquid", v);
+    case_run(&c, 1900, dt);
+    RELATIVE(gap_of(&c), gap + 1900 * dt * v, 1e-9);
+    assert_int_equal(alive(&c), 1);
+    double set = gap + 2e-3 * v;
+    omega = sqrt(1.0e4 * area() / (2.0 * radius + set) / sphere_mass(density, radius));
+    case_run(&c, 100 + lround(0.5 * PI / omega / dt), dt);
+    NEAR(gap_of(&c), set + v / omega, 2.0 * v * dt);
+    /* Molten again after 5.5 ms: it flies on with the velocity of the swing. */
+    case_run(&c, 5510 - 2000 - lround(0.5 * PI / omega / dt), dt);
+    double before = gap_of(&c), speed = case_get(&c, "velocity", 1, 0);
+    NEAR(speed, v * cos(omega * 3.5e-3), 0.02 * v);
+    case_run(&c, 100, dt);
+    NEAR(gap_of(&c) - before, 100 * dt * speed, 1e-12);
+    assert_int_equal(alive(&c), 1);
+    case_close(&c);
+    /* A liquid neck that is drawn further than one would be made is gone. */
+    c = drawn_neck("1100", "liquid", v);
+    case_run(&c, 5100, dt);
+    assert_int_equal(alive(&c), 0);
+    RELATIVE(gap_of(&c), gap + 5100 * dt * v, 1e-9);
+    bond_sums sums;
+    MUST(bonds_count(c.sim, &sums, why));
+    assert_int_equal(sums.broken, 1);
+    case_close(&c);
+}
+
 /* ---- a free body ---- */
 
 static void test_tumbling(void **state)
@@ -228,7 +290,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cantilever), cmocka_unit_test(test_strengths), cmocka_unit_test(test_no_table_loses_a_bond),
-        cmocka_unit_test(test_wall),       cmocka_unit_test(test_tumbling),
+        cmocka_unit_test(test_wall),       cmocka_unit_test(test_neck_melts_and_sets), cmocka_unit_test(test_tumbling),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

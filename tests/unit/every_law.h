@@ -18,6 +18,7 @@ static const law *const every_law[] = {
     &law_bonding_temperature,
     &law_adhesion,
     &law_parallel,
+    &law_sintering,
     &law_jkr,
     &law_dmt,
     &law_sjkr,

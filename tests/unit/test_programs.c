@@ -27,7 +27,7 @@ static void complete_heat(live_laws *live)
     static const slot_id thermal[] = {SLOT_SUBSTANCE, SLOT_SOURCE, SLOT_CONDUCTION, SLOT_ENVIRONMENT, SLOT_HEAT_GENERATION, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY};
     for (size_t n = 0; n < sizeof thermal / sizeof *thermal; n++)
         if (live->law[thermal[n]] && (!live->law[SLOT_TEMPERATURE] || thermal[n] == SLOT_CONDUCTION))
-            live->law[SLOT_TEMPERATURE] = live->law[SLOT_CONDUCTION] || live->law[SLOT_BONDING] == &law_bonding_temperature ? &law_temperature_pairs : &law_temperature_grains;
+            live->law[SLOT_TEMPERATURE] = live->law[SLOT_CONDUCTION] || live->law[SLOT_BONDING] == &law_bonding_temperature || live->law[SLOT_BOND] == &law_sintering ? &law_temperature_pairs : &law_temperature_grains;
 }
 
 /* What a scene derives from the laws that it names: friction and rolling turn grains, a friction law comes with a spring and the reverse. */
@@ -44,7 +44,7 @@ static void complete(live_laws *live)
         live->law[SLOT_BOND] = &law_adhesion;
     if ((live->law[SLOT_BOND] && live->law[SLOT_BOND]->turns) || live->law[SLOT_TANGENTIAL] || live->law[SLOT_ROLLING] || live->law[SLOT_ORIENTATION])
         live->law[SLOT_ROTATION] = &law_rotation_spin;
-    if (live->law[SLOT_BONDING] == &law_bonding_temperature)
+    if (live->law[SLOT_BONDING] == &law_bonding_temperature || live->law[SLOT_BOND] == &law_sintering)
         live->law[SLOT_TEMPERATURE] = &law_temperature_pairs;
     if (live->law[SLOT_LEDGER] || live->law[SLOT_DISSIPATION_HEAT])
         live->law[SLOT_DISSIPATION] = live->law[SLOT_INTEGRATOR] ? &law_dissipation_synchronous : &law_dissipation_tracked;
