@@ -88,6 +88,16 @@ static void test_mixed(void **state)
 {
     (void)state;
     check_closed_form("mixed", 3e-4);
+    /* Steps so small that g, a float, would take a quarter more or less: 7.5e-11 each, on 7.3e-4. */
+    text t = head("", ", neck_radius_ratio_least: 0.3");
+    put(&t, "precision: mixed\nparticles:\n");
+    put_pair(&t, 0, (double[]){radius, radius}, (double[]){1300, 1300});
+    physics_case c = case_open(&t);
+    case_run(&c, 500, DT);
+    double before = sixth(&c, 0);
+    case_run(&c, 40000, 0.01 * DT);
+    RELATIVE(sixth(&c, 0) - before, rate(1300.0, 0.5 * radius) * 400 * DT, 1e-3);
+    case_close(&c);
 }
 
 /* A push of as much as the pull of the surface, F = 9/4 pi gamma r*: twice as fast. A pull of half of it: half. */
