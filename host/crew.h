@@ -25,6 +25,8 @@ status crew_run(const crew *c, failure *why);
 int crew_jobs(int asked, int64_t grains, int members);
 /* The last line of a log that is not empty. */
 void crew_last_line(const char *path, char *text, size_t size);
+/* Zeroed memory that members and the first process share until they end; NULL where there is none. */
+void *crew_shared(size_t size);
 /* Makes the folder, or takes it where it is there. */
 status crew_folder(const char *path, failure *why);
 

@@ -114,7 +114,7 @@ class Command(unittest.TestCase):
             (["bench", "bed", "--particles", "99"], "from 100 to"),
             (["bench", "bed", "--particles", "1.5"], "`1.5`"),
             (["bench", "bed", "--steps", "1e99"], "`1e99`"),
-            (["study", "accuracy", "a.yaml"], "not in this version"),
+            (["study", "accuracy", "a.yaml"], "--out"),
         ]
         for arguments, text in one_line:
             with self.subTest(arguments):
