@@ -117,6 +117,8 @@ typedef struct law {
     const char *parameters[LAW_PARAMETERS_MAX];      /* constants a contact class carries for it, in SI */
     /* Fills parameters for one contact class. `option` are this law's option values. */
     void (*derive)(const contact_class *class, const double *option, double *parameter);
+    /* Rate at which it brakes any motion, 1/s: joins the limit of the step. NULL: none. */
+    double (*drag_rate)(const double *option);
     /* Compile-time constants from the options: appends "#define NAME value" lines. May be NULL. */
     void (*constants)(const double *option, char *text, size_t size);
     /* The same from the whole scene: forms of a law that are cheaper where every contact allows them. May be NULL. */

@@ -131,11 +131,26 @@ static status note_heat(simulation *sim, step_limit *out, failure *why)
     return STATUS_OK;
 }
 
+/* A drag of rate c is a damper on top of all others: where w^2 dt^2 + b dt <= 4 bounded the step, w^2 dt^2 + (b + 2 c) dt <= 4 does, and
+ * 1/(1/dt + c/2) is within that. An integrator that extrapolates what a damper is given counts it twice. */
+static void note_drag(const simulation *sim, step_limit *out)
+{
+    const law *law = sim->live.law[SLOT_BODY];
+    const effect *effect = scene_effect(sim->scene, sim->stage, SLOT_BODY);
+    if (!law || !law->drag_rate || !effect)
+        return;
+    double rate = law->drag_rate(effect->option) * (live_keeps_half_steps(&sim->live) ? 2.0 : 1.0);
+    double moving = fmin(out->live_s, out->expected_s);
+    if (rate > 0.0)
+        note(out, 1.0 / (1.0 / moving + 0.5 * rate), "background drag");
+}
+
 status limit_find(simulation *sim, step_limit *out, failure *why)
 {
     *out = (step_limit){.limit_s = INFINITY, .recommended_s = INFINITY, .live_s = INFINITY, .expected_s = INFINITY};
     snprintf(out->binds, sizeof out->binds, "nothing");
     TRY(note_heat(sim, out, why));
+    note_drag(sim, out);
     out->recommended_s = SAFETY * out->limit_s;
     if (!sim->live.law[SLOT_NORMAL] || sim->count == 0)
         return STATUS_OK;
@@ -160,6 +175,7 @@ status limit_find(simulation *sim, step_limit *out, failure *why)
                 shortest = fmin(shortest, e.duration);
         }
     out->contact_s = isfinite(shortest) ? shortest : 0.0;
+    note_drag(sim, out);
     out->recommended_s = SAFETY * out->limit_s;
     if (SHARE_OF_CONTACT * shortest < out->recommended_s)
         out->recommended_s = SHARE_OF_CONTACT * shortest;

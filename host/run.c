@@ -396,12 +396,25 @@ static status run_stages(run *r, int first, bool resumed, failure *why)
     return STATUS_OK;
 }
 
-static void warn_of_overlaps(const run *r)
+/* Grains that begin pressed into each other would fly apart: where guards look on, such a scene is refused before a step is taken. */
+static status refuse_overlaps(const run *r, failure *why)
 {
     int64_t i, j;
+    const guard_spec *guards = &r->scene->guards;
     double most = bed_largest_overlap(&r->bed, &r->scene->domain, &i, &j);
-    if (most > r->scene->guards.overlap_max)
-        tell(r, "warning: grains %lld and %lld overlap by %.3g of the smaller radius at the start", (long long)i, (long long)j, most);
+    bool felt = scene_effect(r->scene, 0, SLOT_NORMAL) && !r->scene->stage[0].frozen;
+    if (felt && most > 0.0 && i != j && most * fmin(r->bed.radius[i], r->bed.radius[j]) >= r->bed.radius[i] + r->bed.radius[j])
+        return fail(why, STATUS_BAD_INPUT, "%s: grains %lld and %lld are at the same place, so that no direction leads them apart; move one of them",
+                    r->scene->path, (long long)i, (long long)j);
+    if (most <= guards->overlap_max)
+        return STATUS_OK;
+    if (guards->every_steps > 0 && felt)
+        return fail(why, STATUS_BAD_INPUT,
+                    "%s: grains %lld and %lld overlap by %.3g of the smaller radius at the start, guards.overlap_max is %g; move them apart, or raise "
+                    "guards.overlap_max and list {slot: body, law: viscous_damping}, so that they part gently",
+                    r->scene->path, (long long)i, (long long)j, most, guards->overlap_max);
+    tell(r, "warning: grains %lld and %lld overlap by %.3g of the smaller radius at the start", (long long)i, (long long)j, most);
+    return STATUS_OK;
 }
 
 static status prepare(run *r, const run_options *options, const char *results_path, failure *why)
@@ -475,7 +488,7 @@ static status begin_scene(run *r, const run_options *options, failure *why)
         precision_find(options->precision, &r->scene->precision);
     TRY(bed_generate(r->scene, &r->bed, why));
     TRY(prepare(r, options, options->out, why));
-    warn_of_overlaps(r);
+    TRY(refuse_overlaps(r, why));
     schedule_init(&r->schedule, r->scene);
     TRY(begin_stage(r, 0, why));
     TRY(open_output(r, false, why));

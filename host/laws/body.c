@@ -9,6 +9,11 @@ static void coefficient_constant(const double *option, char *text, size_t size)
     snprintf(text + used, size - used, "#define BODY_DAMPING R(%.17e)\n", option[0]);
 }
 
+static double drag_rate(const double *option)
+{
+    return option[0];
+}
+
 const law law_local_damping = {
     .name = "local_damping",
     .slot = SLOT_BODY,
@@ -27,5 +32,6 @@ const law law_viscous_damping = {
     .source = "dv/dt = -c v",
     .kernel_file = "effect/body_viscous_damping.cl",
     .options = {{"coefficient", NULL, 0, 1e9, 1, "rate of decay, 1/s"}},
+    .drag_rate = drag_rate,
     .constants = coefficient_constant,
 };

@@ -77,8 +77,19 @@ class Guards(unittest.TestCase):
             self.assertGreater(file["run/step"][...].item(), 0)
 
     def test_overlap_at_the_start(self):
-        done = self.run_scene(scene((0, 0, 0), (0.001, 0, 0)))
-        self.assertIn("warning: grains 0 and 1 overlap by 1 of the smaller radius at the start", done.stderr.replace("grains 1 and 0", "grains 0 and 1"))
+        """Refused before a step is taken, unless the scene allows it; grains at one place always are."""
+        near = scene((0, 0, 0), (0.001, 0, 0))
+        done = self.run_scene(near)
+        self.assertEqual(done.returncode, BAD_INPUT)
+        self.assertIn("overlap by 1 of the smaller radius at the start, guards.overlap_max is 0.3", done.stderr)
+        self.assertIn("viscous_damping", done.stderr)
+        self.assertEqual(self.run_scene(near, "--set", "guards.overlap_max=1.1").returncode, OK)
+        done = self.run_scene(near, "--set", "guards.every_steps=0")
+        self.assertEqual(done.returncode, OK)
+        self.assertIn("warning: grains 0 and 1 overlap by 1 of", done.stderr.replace("grains 1 and 0", "grains 0 and 1"))
+        done = self.run_scene(scene((0, 0, 0), (0, 0, 0)), "--set", "guards.overlap_max=2")
+        self.assertEqual(done.returncode, BAD_INPUT)
+        self.assertIn("grains 0 and 1 are at the same place", done.stderr)
 
     def test_move(self):
         # the wall, far away, holds the frame: without one, moves count against the bed's common velocity
