@@ -1,4 +1,5 @@
 #include "bed_group.h"
+#include "laws/laws.h"
 #include "results.h"
 
 #include <inttypes.h>
@@ -34,10 +35,10 @@ static status take_rows(const scene *s, int group, const results_particles *p, b
             memcpy(b->velocity[i], p->velocity + 3 * row, sizeof b->velocity[i]);
         if (p->spin)
             memcpy(b->spin[i], p->spin + 3 * row, sizeof b->spin[i]);
-        if (p->radius)
-            b->radius[i] = p->radius[row];
         if (p->temperature && !isnan(p->temperature[row]))
             b->temperature[i] = p->temperature[row];
+        if (p->radius)
+            b->radius[i] = p->radius[row] / (p->radius_varies ? expansion_factor(s, g->material, b->temperature[i]) : 1.0);
         i++;
     }
     return STATUS_OK;

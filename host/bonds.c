@@ -99,7 +99,7 @@ status bonds_keep(simulation *sim, const clast_launch *launch, int room, bool fi
         TRY(find_inverse(sim, launch, why));
     cl_mem first = fill ? t->work[3] : t->work[0], second = fill ? t->owner[next] : t->work[1];
     cl_mem third = fill ? t->other[next] : store_find(sim, "force")->mem;
-    TRY(launch_set(kernel, name, why, "Lmmmmmmmmmmmmmmii", launch, t->grid, store_find(sim, "position")->mem, store_find(sim, "radius")->mem,
+    TRY(launch_set(kernel, name, why, "Lmmmmmmmmmmmmmmii", launch, t->grid, store_find(sim, "position")->mem, table_radii(sim),
                    store_find(sim, "id")->mem, t->work[2], sim->where, t->owner[t->now], t->other[t->now], t->slot_offset[t->now], t->slots[t->now],
                    store_find(sim, field_bonded.name)->mem, first, second, third, room, t->old_wall_base));
     return launch_run(sim, kernel, name, sim->count, CLAST_BLOCK, why);

@@ -9,7 +9,7 @@ const law *const laws[] = {&law_hertz,        &law_linear,        &law_mindlin, 
                            &law_constant_torque, &law_power, &law_adhesion, &law_parallel, &law_sintering, &law_jkr, &law_dmt, &law_sjkr,
                            &law_local_damping, &law_viscous_damping, &law_overlap_area,
                            &law_batchelor_obrien, &law_pipe_network, &law_newton,
-                           &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, &law_laser, &law_burner, &law_exponential_softening, &law_fraction, NULL};
+                           &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, &law_laser, &law_burner, &law_exponential_softening, &law_linear_expansion, &law_fraction, NULL};
 
 static const struct {
     const char *name;
@@ -20,6 +20,7 @@ static const struct {
     [SLOT_BONDING] = {"bonding", false},         [SLOT_BOND] = {"bond", true},              [SLOT_COHESION] = {"cohesion", true},
     [SLOT_SLIP] = {"slip", false},
     [SLOT_TANGENTIAL] = {"tangential", true},    [SLOT_ROLLING] = {"rolling", true},        [SLOT_MODULUS] = {"modulus", true},          [SLOT_SOFTENING] = {"softening", false},
+    [SLOT_RADIUS] = {"radius", true},            [SLOT_EXPANSION] = {"expansion", false},
     [SLOT_DISSIPATION] = {"dissipation", false},
     [SLOT_DISSIPATION_HEAT] = {"dissipation_heat", true},
     [SLOT_LEDGER] = {"ledger", false},           [SLOT_WALLS] = {"walls", false},
@@ -62,7 +63,8 @@ const property *const *material_properties(void)
                                           &property_conductivity, &property_specific_heat,
                                           &property_film_thickness, &property_film_conductivity, &property_real_modulus,
                                           &property_emissivity, &property_absorptance, &property_heat_generation, 
-                                          &property_softening_temperature, &property_softening_rate, &property_modulus_floor, NULL};
+                                          &property_softening_temperature, &property_softening_rate, &property_modulus_floor,
+                                          &property_expansion, &property_reference_temperature, NULL};
     return all;
 }
 

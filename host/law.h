@@ -13,6 +13,7 @@ typedef enum slot_id {
     SLOT_ROTATION,    /* derived: spin, where a law or an output asks for it */
     SLOT_TEMPERATURE, /* derived: temperature and its step, where a thermal law or an output asks for them */
     SLOT_SUBSTANCE,   /* derived: constants of the grains' materials, where several have a temperature */
+    SLOT_RADIUS,  /* radii that depend on temperature */
     SLOT_MODULUS, /* moduli that depend on temperature */
     SLOT_NORMAL,
     SLOT_BONDING, /* derived: what lets a contact bond */
@@ -22,6 +23,7 @@ typedef enum slot_id {
     SLOT_TANGENTIAL,
     SLOT_ROLLING,
     SLOT_SOFTENING,   /* derived: work of changing moduli, where the ledger is live */
+    SLOT_EXPANSION,   /* derived: work of growing radii, where the ledger is live */
     SLOT_DISSIPATION, /* derived: what contacts dissipate, where the ledger or heat asks */
     SLOT_DISSIPATION_HEAT,
     SLOT_LEDGER, /* derived: energies, where an observable asks for them */

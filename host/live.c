@@ -152,6 +152,8 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         out->law[SLOT_DISSIPATION] = scene->integrator == INTEGRATOR_VELOCITY_VERLET ? &law_dissipation_synchronous : &law_dissipation_tracked;
     if (out->law[SLOT_LEDGER] && out->law[SLOT_MODULUS])
         out->law[SLOT_SOFTENING] = &law_softening_tracked;
+    if (out->law[SLOT_LEDGER] && out->law[SLOT_RADIUS])
+        out->law[SLOT_EXPANSION] = &law_expansion_tracked;
     out->servo = scene_has_servo(scene);
     if (scene_outputs(scene, "orientation"))
         out->law[SLOT_ORIENTATION] = &law_orientation_quaternion;
@@ -176,6 +178,8 @@ void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, liv
         out->law[SLOT_BONDING] = NULL;
     if (!out->law[SLOT_MODULUS])
         out->law[SLOT_SOFTENING] = NULL;
+    if (!out->law[SLOT_RADIUS])
+        out->law[SLOT_EXPANSION] = NULL;
     if (out->law[SLOT_TEMPERATURE])
         out->law[SLOT_TEMPERATURE] = temperature_law(out);
     if (!out->law[SLOT_CONDUCTION])
@@ -197,6 +201,7 @@ static const char *none_file(slot_id slot)
         [SLOT_RADIATION] = "none/radiation.cl",     [SLOT_SOURCE] = "none/source.cl",           [SLOT_HEAT_GENERATION] = "none/heat_generation.cl",
         [SLOT_THERMAL_GROUPS] = "none/thermal_groups.cl", [SLOT_HEAT_TALLY] = "none/heat_tally.cl",
         [SLOT_MODULUS] = "none/modulus.cl",         [SLOT_SOFTENING] = "none/softening.cl",
+        [SLOT_RADIUS] = "none/radius.cl",           [SLOT_EXPANSION] = "none/expansion.cl",
         [SLOT_DISSIPATION] = "none/dissipation.cl", [SLOT_LEDGER] = "none/ledger.cl",           [SLOT_DISSIPATION_HEAT] = "none/dissipation_heat.cl",
         [SLOT_BODY] = "none/body.cl",               [SLOT_ORIENTATION] = "none/orientation.cl", [SLOT_INTEGRATOR] = NULL,
     };

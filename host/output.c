@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The last of them, the radius, is a series where it changes. */
 #define CONSTANT_FIELDS 5
 
 struct output {
@@ -66,6 +67,7 @@ static status list_fields(output *o, failure *why)
     if (!o->field)
         return fail(why, STATUS_ERROR, "out of memory");
     memcpy(o->field, constant, sizeof constant);
+    o->field[CONSTANT_FIELDS - 1].constant = !o->sim->all.law[SLOT_RADIUS];
     o->field_count = CONSTANT_FIELDS;
     for (int f = 0; f < spec->field_count; f++) {
         const output_name *name = find_name(output_fields, spec->fields[f]);
@@ -182,7 +184,9 @@ static status frame_values(output *o, const void **value, double **owned, failur
 {
     const void *const constant[CONSTANT_FIELDS] = {o->id, o->group, o->material, o->mass, o->radius};
     memcpy(value, constant, sizeof constant);
-    for (int f = CONSTANT_FIELDS; f < o->field_count; f++) {
+    for (int f = 0; f < o->field_count; f++) {
+        if (o->field[f].constant || f < CONSTANT_FIELDS - 1)
+            continue;
         const char *name = o->field[f].name;
         bool force = strcmp(name, "force") == 0, torque = strcmp(name, "torque") == 0;
         TRY(force || torque ? total_of_contacts(o, torque, &owned[f], why) : observe_field(o->sim, name, &owned[f], why));

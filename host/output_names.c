@@ -14,8 +14,6 @@ const output_name output_fields[] = {
     {0},
 };
 
-#define EXPANSION "a law of thermal expansion"
-
 const output_name output_observables[] = {
     {"time_step", "s", 1, NULL, "time step"},
     {"kinetic_energy", "J", 1, NULL, "translational kinetic energy"},
@@ -38,7 +36,7 @@ const output_name output_observables[] = {
     {"work_gravity", "J", 1, NULL, "work of gravity"},
     {"work_walls", "J", 1, NULL, "work of the walls"},
     {"work_groups", "J", 1, NULL, "work of what holds or moves grains as prescribed"},
-    {"work_expansion", "J", 1, EXPANSION, "work of thermal expansion"},
+    {"work_expansion", "J", 1, NULL, "work of thermal expansion"},
     {"work_stiffness", "J", 1, NULL, "work of changing stiffness"},
     {"thermal_energy", "J", 1, NULL, "heat content, the sum of m c T"},
     {"heat_sources", "J", 1, NULL, "heat gained from sources, generation, given fluxes and prescribed temperatures so far"},

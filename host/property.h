@@ -17,6 +17,7 @@ extern const property property_bond_stiffness, property_bond_equilibrium_overlap
     property_neck_ratio_least, property_neck_ratio_most;
 
 extern const property property_softening_temperature, property_softening_rate, property_modulus_floor;
+extern const property property_expansion, property_reference_temperature;
 
 /* Ratio to critical damping of the normal law: as given, or from the coefficient of restitution through `invert`, or 0. */
 double normal_damping_ratio(const contact_class *class, double (*invert)(double restitution));

@@ -62,6 +62,7 @@ status results_text(results *r, const char *name, const char *text, failure *why
 typedef struct results_particles {
     int64_t count;
     double *position, *velocity, *spin, *radius, *temperature; /* [count][3] or [count] */
+    bool radius_varies; /* radii are a series: those at the temperatures of the frame */
     double time;
 } results_particles;
 status results_read_particles(const char *path, int64_t frame, results_particles *out, failure *why);

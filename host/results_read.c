@@ -129,6 +129,7 @@ status results_read_particles(const char *path, int64_t frame, results_particles
     TRY_GOTO(result, done, read_field(&r, "velocity", 3, &out->velocity, why));
     TRY_GOTO(result, done, read_field(&r, "spin", 3, &out->spin, why));
     TRY_GOTO(result, done, read_field(&r, "radius", 1, &out->radius, why));
+    out->radius_varies = out->radius && exists(r.file, "/particles/all/radius/value");
     TRY_GOTO(result, done, read_field(&r, "temperature", 1, &out->temperature, why));
 done:
     H5Fclose(r.file);

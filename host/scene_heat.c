@@ -38,7 +38,7 @@ bool scene_has_temperature(const scene *s)
         if (scene_outputs(s, names[k]))
             return true;
     const effect *bond = scene_effect(s, -1, SLOT_BOND);
-    if (scene_effect(s, -1, SLOT_MODULUS))
+    if (scene_effect(s, -1, SLOT_MODULUS) || scene_effect(s, -1, SLOT_RADIUS))
         return true;
     return scene_has_heat(s) || scene_tallies_heat(s) || (bond && bonding_reads_temperature(bond->law, bond->option));
 }

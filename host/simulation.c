@@ -3,6 +3,7 @@
 #include "bond_figures.h"
 #include "frozen.h"
 #include "laws/fields.h"
+#include "laws/laws.h"
 #include "precision.h"
 #include "property.h"
 
@@ -23,13 +24,15 @@ static double seconds(void)
 static void measure_bed(simulation *sim, const bed *bed)
 {
     const scene *scene = sim->scene;
-    sim->radius_min = INFINITY;
+    sim->radius_min = sim->table.radius_min = INFINITY;
     for (int64_t i = 0; i < bed->count; i++) {
-        double r = bed->radius[i], density = scene_material(scene, bed->material[i], &property_density);
+        double rest = bed->radius[i], r = rest * expansion_factor(scene, bed->material[i], bed->temperature[i]), density = scene_material(scene, bed->material[i], &property_density);
         sim->radius_min = fmin(sim->radius_min, r);
         sim->radius_max = fmax(sim->radius_max, r);
+        sim->table.radius_min = fmin(sim->table.radius_min, rest);
+        sim->table.radius_max = fmax(sim->table.radius_max, rest);
         sim->mean_radius += r / (double)bed->count;
-        sim->mean_mass += 4.0 / 3.0 * M_PI * density * r * r * r / (double)bed->count;
+        sim->mean_mass += 4.0 / 3.0 * M_PI * density * rest * rest * rest / (double)bed->count;
     }
     for (int c = 0; c < 3; c++) {
         bool periodic = scene->domain.given && scene->domain.periodic[c];
@@ -85,6 +88,24 @@ static status upload_vectors(simulation *sim, const char *name, const double (*v
     return store_put_grains(sim, store_find(sim, name), count, &value[0][0], why);
 }
 
+/* Radii at the temperatures of the grains; their own are those at the reference temperature. */
+static status upload_expanded(simulation *sim, const bed *bed, double *radius, failure *why)
+{
+    stored_field *reference = store_find(sim, field_reference_radius.name);
+    if (!reference)
+        return STATUS_OK;
+    TRY(store_put_grains(sim, reference, sim->stride, radius, why));
+    for (int64_t i = 0; i < bed->count; i++) {
+        double factor = expansion_factor(sim->scene, bed->material[i], bed->temperature[i]);
+        if (!(factor > 0.0))
+            return fail(why, STATUS_BAD_INPUT, "%s: a particle of the material `%s` at %g K would have %g of its radius; expansion_1_k and "
+                        "reference_temperature_k must leave it positive", sim->scene->path, sim->scene->material[bed->material[i]].name,
+                        bed->temperature[i], factor);
+        radius[i] *= factor;
+    }
+    return STATUS_OK;
+}
+
 /* Grains that pad the last block have unit mass and radius, so that nothing divides by zero. */
 static status upload_scalars(simulation *sim, const bed *bed, failure *why)
 {
@@ -100,6 +121,8 @@ static status upload_scalars(simulation *sim, const bed *bed, failure *why)
         material[i] = real ? bed->material[i] : 0;
     }
     uint64_t n = (uint64_t)sim->stride;
+    if (result == STATUS_OK)
+        result = upload_expanded(sim, bed, radius, why);
     if (result == STATUS_OK)
         result = store_put_grains(sim, store_find(sim, "radius"), sim->stride, radius, why);
     if (result == STATUS_OK)

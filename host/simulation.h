@@ -12,7 +12,7 @@
 
 #include <clast/shared.h>
 
-#define SIMULATION_FIELDS_MAX 32
+#define SIMULATION_FIELDS_MAX 64
 #define SIMULATION_KERNELS_MAX 96
 #define BATCH_STEPS_MAX 1024
 /* Arguments of a kernel that the descriptors name, at most. */
@@ -49,6 +49,8 @@ typedef struct contact_table {
     cl_mem cell_count, cell_start, sums, grid, width;
     clast_grid grid_host;
     double skin;
+    double radius_min, radius_max; /* at the reference temperature, where radii change */
+    double growth;                 /* largest since, m */
     bool skin_is_given;
     int64_t skin_look; /* steps after the last table at which the skin is looked at again */
     bool built;
@@ -278,6 +280,8 @@ void table_free(simulation *sim);
 status table_build(simulation *sim, bool drop_outside, failure *why);
 /* Largest displacement since the table was built, relative to the common one, m. */
 status table_travel(simulation *sim, double *out, failure *why);
+/* The radii that tables go by. */
+cl_mem table_radii(simulation *sim);
 uint64_t table_bytes(const simulation *sim);
 
 /* limit.c */

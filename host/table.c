@@ -1,4 +1,5 @@
 /* The contact table on the device: see kernels/stage/table.cl. The host drives the launches and grows what is too small. */
+#include "laws/fields.h"
 #include "precision.h"
 #include "simulation.h"
 
@@ -87,22 +88,47 @@ static void set_level(const simulation *sim, double size, double low[3], double 
     }
 }
 
+cl_mem table_radii(simulation *sim)
+{
+    stored_field *reference = store_find(sim, field_reference_radius.name);
+    return (reference ? reference : store_find(sim, "radius"))->mem;
+}
+
+/* Where radii change, tables go by those at the reference temperature: who owns a pair may not depend on when a table was built. What grains
+ * have grown by since is added to the skin. */
+static status measure_growth(simulation *sim, failure *why)
+{
+    contact_table *t = &sim->table;
+    size_t n = (size_t)sim->count;
+    t->growth = 0.0;
+    if (!sim->all.law[SLOT_RADIUS] || n == 0)
+        return STATUS_OK;
+    double *radius = malloc(2 * sizeof *radius * n);
+    status result = radius ? store_get_grains(sim, store_find(sim, "radius"), sim->count, radius, why) : fail(why, STATUS_ERROR, "out of memory");
+    if (result == STATUS_OK)
+        result = store_get_grains(sim, store_find(sim, field_reference_radius.name), sim->count, radius + n, why);
+    for (size_t i = 0; i < n && result == STATUS_OK; i++)
+        t->growth = fmax(t->growth, radius[i] - radius[n + i]);
+    free(radius);
+    return result;
+}
+
 static void set_grid(simulation *sim, bool drop_outside)
 {
     contact_table *t = &sim->table;
     clast_grid *g = &t->grid_host;
     memset(g, 0, sizeof *g);
-    g->radius_max = sim->radius_max;
-    g->skin = t->skin + sim->reach;
+    g->radius_max = t->radius_max;
+    g->skin = t->skin + sim->reach + 2.0 * t->growth;
     g->wall_share = bonds_are_kept(sim) ? 1.0 : 0.0;
     g->drop_outside = drop_outside;
     memcpy(g->origin, sim->bed_low, sizeof g->origin);
     int levels = 1;
-    while (levels < CLAST_LEVELS_MAX && sim->radius_max / pow(2.0, levels) > sim->radius_min)
+    while (levels < CLAST_LEVELS_MAX && t->radius_max / pow(2.0, levels) > t->radius_min)
         levels++;
     g->level_count = levels;
     for (int l = 0; l < levels; l++) {
-        set_level(sim, 2.0 * sim->radius_max / pow(2.0, l) + g->skin, sim->bed_low, sim->bed_high, &g->level[l]);
+        set_level(sim, 2.0 * t->radius_max / pow(2.0, l) + g->skin, sim->bed_low, sim->bed_high, &g->level[l]);
         g->level[l].first_cell = g->cell_count;
         g->cell_count += g->level[l].cells[0] * g->level[l].cells[1] * g->level[l].cells[2];
     }
@@ -154,7 +180,7 @@ static status sort_grains(simulation *sim, const clast_launch *launch, failure *
 {
     contact_table *t = &sim->table;
     int cells = t->grid_host.cell_count;
-    cl_mem position = store_find(sim, "position")->mem, radius = store_find(sim, "radius")->mem, id = store_find(sim, "id")->mem;
+    cl_mem position = store_find(sim, "position")->mem, radius = table_radii(sim), id = store_find(sim, "id")->mem;
     cl_kernel bin = launch_kernel(sim, "table_bin"), order = launch_kernel(sim, "table_order"), inside = launch_kernel(sim, "table_order_cells");
     TRY(store_fill(sim, t->cell_count, 4 * (uint64_t)(cells + 1), why));
     TRY(launch_set(bin, "table_bin", why, "Lmmmmmm", launch, t->grid, position, radius, t->work[WORK_A], t->work[WORK_B], t->cell_count));
@@ -214,7 +240,7 @@ static int kept_partners(const simulation *sim)
 static status count_records(simulation *sim, const clast_launch *launch, failure *why)
 {
     contact_table *t = &sim->table;
-    cl_mem position = store_find(sim, "position")->mem, radius = store_find(sim, "radius")->mem, id = store_find(sim, "id")->mem;
+    cl_mem position = store_find(sim, "position")->mem, radius = table_radii(sim), id = store_find(sim, "id")->mem;
     cl_kernel count = launch_kernel(sim, "table_count"), walls = launch_kernel(sim, "table_count_walls");
     TRY(store_fill(sim, t->work[WORK_B], 4 * (uint64_t)sim->stride, why));
     TRY(launch_set(count, "table_count", why, "Lmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_A], t->work[WORK_B],
@@ -276,7 +302,7 @@ static status fill_records(simulation *sim, const clast_launch *launch, int room
 {
     contact_table *t = &sim->table;
     int next = 1 - t->now;
-    cl_mem position = store_find(sim, "position")->mem, radius = store_find(sim, "radius")->mem, id = store_find(sim, "id")->mem;
+    cl_mem position = store_find(sim, "position")->mem, radius = table_radii(sim), id = store_find(sim, "id")->mem;
     cl_kernel fill = launch_kernel(sim, "table_fill"), walls = launch_kernel(sim, "table_fill_walls"), pad = launch_kernel(sim, "table_pad");
     TRY(launch_set(fill, "table_fill", why, "Lmmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_D], t->owner[next],
                    t->other[next], store_find(sim, "force")->mem, room));
@@ -388,6 +414,9 @@ static status finish(simulation *sim, failure *why)
     servo_note_table(sim);
     t->skin_look = FIRST_SKIN_LOOK;
     TRY(store_copy(sim, store_find(sim, "position")->mem, sim->built_position, 0, 0, field_bytes(sim, &field_position), why));
+    stored_field *built = store_find(sim, field_built_radius.name);
+    if (built)
+        TRY(store_copy(sim, store_find(sim, "radius")->mem, built->mem, 0, 0, field_bytes(sim, built->field), why));
     TRY(simulation_choose_drift(sim, why));
     TRY(step_plan_make(sim, why));
     return launch_bind_stages(sim, why);
@@ -400,6 +429,7 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
     int old_wall_base = t->old_wall_base = t->wall_base;
     int64_t old_stride = t->record_stride, old_capacity = t->record_capacity;
     TRY(bonds_before(sim, why));
+    TRY(measure_growth(sim, why));
     set_grid(sim, drop_outside);
     TRY(fit_cells(sim, why));
     clast_grid grid = t->grid_host;

@@ -125,6 +125,7 @@ typedef struct contact {
     vec3 spin_i, spin_j;
     real neck;           /* radius of a neck of solid material between the two, m; 0 without */
     real touch;          /* overlap whether or not the two act on each other with forces, m */
+    real growth_i, growth_j;   /* of the radii in the last step, m */
     real modulus_i, modulus_j; /* factors of Young's moduli; 1 at a wall */
     real temperature_i, temperature_j; /* K; of a wall: that of the grain */
     real dt;             /* of the step to come */
@@ -171,6 +172,7 @@ typedef struct grain_step {
     real mass, inertia, span; /* span: for which the forces act, s */
     vec3 velocity, velocity_next, spin, spin_next, force, force_damped, torque, torque_damped;
     bool prescribed;
+    real grown; /* rotational energy gained by growing, before the torque acts, J */
 } grain_step;
 
 INLINE spring_step no_spring(bool slides)

@@ -10,6 +10,10 @@ extern const law law_precision_mixed, law_composition_several, law_periodic_box,
     law_walls_planes, law_walls_finite, law_walls_round, law_orientation_quaternion, law_semi_implicit_euler, law_velocity_verlet, law_velocity_verlet_spin,
     law_dissipation_tracked, law_dissipation_synchronous, law_ledger_energies, law_fraction, law_exponential_softening, law_softening_tracked;
 
+extern const law law_linear_expansion, law_expansion_tracked;
+/* Radius at a temperature over the one given; 1 without a law of expansion. */
+double expansion_factor(const struct scene *scene, int material, double temperature);
+
 /* E(T)/E of a grain of this material by the live law of softening. */
 double modulus_factor_at(const struct scene *scene, int material, double temperature);
 extern const law law_overlap_area, law_batchelor_obrien, law_pipe_network, law_wall_flux, law_newton, law_still_gas, law_nusselt, law_stefan_boltzmann,

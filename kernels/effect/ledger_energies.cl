@@ -43,7 +43,9 @@ INLINE void ledger_wall(ledger_state *s, real work)
             lost = add(lost, LOAD3(record_energy, (launch)->record_stride, entry - 1));                                                   \
             work.x += AT(record_energy, (launch)->record_stride, 3, entry - 1);                                                           \
             work.y += AT(record_energy, (launch)->record_stride, 4, entry - 1);                                                           \
+            EXPANSION_GATHER(launch, entry - 1, work.z);                                                                                  \
         }                                                                                                                                 \
+        work.z += (step)->grown;                                                                                                          \
         LEDGER_ADD(dissipated, i, lost);                                                                                                  \
         LEDGER_ADD(work_contacts, i, work);                                                                                               \
         LEDGER_ADD(work_grains, i, ledger_grain(launch, step));                                                                           \

@@ -6,6 +6,9 @@
 #define NORMAL_DAMPING 1
 #endif
 
+/* d ln(energy)/d ln r* at a given overlap. */
+#define NORMAL_ENERGY_BY_RADIUS R(0.5)
+
 INLINE void normal_force(const contact *c, response *out)
 {
     out->spring = R(1.33333333333333333) * modulus_normal(c) * c->value[NORMAL_MODULUS] * c->contact_radius * c->overlap;

@@ -5,6 +5,9 @@
 #define NORMAL_DAMPING 1
 #endif
 
+/* d ln(energy)/d ln r* at a given overlap. */
+#define NORMAL_ENERGY_BY_RADIUS R(0.0)
+
 INLINE void normal_force(const contact *c, response *out)
 {
     real damping = c->overlap > R(0.0) ? modulus_root(modulus_normal(c)) * c->value[NORMAL_DAMPING] * sqrt(c->mass_eff) : R(0.0);

@@ -6,6 +6,9 @@
 #define NORMAL_DAMPING 2
 #endif
 
+/* d ln(energy)/d ln r* at a given overlap. */
+#define NORMAL_ENERGY_BY_RADIUS R(0.0)
+
 INLINE real normal_spring(const contact *c)
 {
     bool touches = c->overlap > R(0.0);

@@ -1,5 +1,6 @@
 /* normal: grains do not touch. */
 #define NORMAL_STIFF 0
+#define NORMAL_ENERGY_BY_RADIUS R(0.0)
 
 INLINE void normal_force(const contact *c, response *out)
 {

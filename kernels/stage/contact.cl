@@ -7,7 +7,7 @@
     BONDING_PAIR_FIELDS(READ, WRITE) BOND_PAIR_FIELDS(READ, WRITE) COHESION_PAIR_FIELDS(READ, WRITE)                           \
     SLIP_PAIR_FIELDS(READ, WRITE) TANGENTIAL_PAIR_FIELDS(READ, WRITE) ROLLING_PAIR_FIELDS(READ, WRITE)                                        \
     DISSIPATION_PAIR_FIELDS(READ, WRITE) DISSIPATION_HEAT_PAIR_FIELDS(READ, WRITE) LEDGER_PAIR_FIELDS(READ, WRITE) WALLS_PAIR_FIELDS(READ, WRITE)                                  \
-    TEMPERATURE_PAIR_FIELDS(READ, WRITE) MODULUS_PAIR_FIELDS(READ, WRITE) SOFTENING_PAIR_FIELDS(READ, WRITE)                       \
+    TEMPERATURE_PAIR_FIELDS(READ, WRITE) MODULUS_PAIR_FIELDS(READ, WRITE) SOFTENING_PAIR_FIELDS(READ, WRITE) EXPANSION_PAIR_FIELDS(READ, WRITE)                       \
     CONDUCTION_PAIR_FIELDS(READ, WRITE) WALL_HEAT_PAIR_FIELDS(READ, WRITE) INTEGRATOR_PAIR_FIELDS(READ, WRITE)
 #define PAIR_DECLARE PAIR_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PAIR_PASS PAIR_FIELDS(PASS, PASS)
@@ -43,6 +43,8 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     c->past_spin_j = INTEGRATOR_PAST_SPIN(j, c->spin_j);
     c->modulus_i = MODULUS_OF(i);
     c->modulus_j = MODULUS_OF(j);
+    c->growth_i = GROWTH_OF(i);
+    c->growth_j = GROWTH_OF(j);
     c->ahead = sub(DISSIPATION_AHEAD(i), DISSIPATION_AHEAD(j));
     c->ahead_spin_i = DISSIPATION_AHEAD_SPIN(i);
     c->ahead_spin_j = DISSIPATION_AHEAD_SPIN(j);
@@ -87,6 +89,8 @@ INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_
     c->past_spin_i = INTEGRATOR_PAST_SPIN(i, c->spin_i);
     c->modulus_i = MODULUS_OF(i);
     c->modulus_j = R(1.0);
+    c->growth_i = GROWTH_OF(i);
+    c->growth_j = R(0.0);
     c->ahead = DISSIPATION_AHEAD(i);
     c->ahead_spin_i = DISSIPATION_AHEAD_SPIN(i);
     c->ahead_spin_j = v3(R(0.0), R(0.0), R(0.0));
@@ -120,6 +124,7 @@ typedef struct contact_state {
     tangential_state tangential;
     rolling_state rolling;
     softening_state softening;
+    expansion_state expansion;
     dissipation_state dissipation;
     ledger_state ledger;
 } contact_state;
@@ -144,6 +149,7 @@ INLINE void contact_laws(contact *c, contact_state *s, response *out)
     rolling_moment(c, &s->rolling, out);
     out->lost = dissipation_of(c, out, &s->dissipation);
     out->lost.stiffness += softening_work(c, &s->softening);
+    expansion_contact(c, out->spring, &s->expansion);
     ledger_contact(&s->ledger, out->lost);
     bond_shear(c, &s->bond, out);
 }

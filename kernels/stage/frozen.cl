@@ -146,7 +146,14 @@ __kernel void heat_frozen_accept(const clast_launch launch, __global const real 
     HEAT_TALLY_KEPT(kept, i, &h);
     if (all || THERMAL_GROUP_HOLDS(&launch, i))
         h.sources = temperature_capacity(&g) * rises[i] - (h.contacts + h.convection + h.radiation);
-    TEMPERATURE_STORE(i, temperature_after(TEMPERATURE_PRECISE(i), rises[i]));
+    precise after = temperature_after(TEMPERATURE_PRECISE(i), rises[i]);
+    TEMPERATURE_STORE(i, after);
+    MODULUS_STORE(i, &g, after);
+    real grown = RADIUS_STORE(i, &g, after);
+    precise3 w = ROTATION_PRECISE(&launch, i);
+    INTEGRATOR_KEEP_SPIN(i, RADIUS_SPIN(i, INTEGRATOR_SPIN(i, w), grown));
+    ROTATION_STORE(&launch, i, RADIUS_SPIN(i, w, grown));
+    GROWTH_KEEP(i, GROWTH_OF(i) + grown);
     HEAT_TALLY_ADD(i, &h);
 }
 

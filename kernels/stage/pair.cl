@@ -6,6 +6,7 @@
     TANGENTIAL_LOAD(launch, k, (s).tangential);   \
     ROLLING_LOAD(launch, k, (s).rolling);         \
     SOFTENING_LOAD(launch, k, (s).softening);     \
+    EXPANSION_LOAD(launch, k, (s).expansion);     \
     DISSIPATION_LOAD(launch, k, (s).dissipation); \
     LEDGER_LOAD(launch, k, (s).ledger)
 #define PAIR_STORE_STATE(launch, k, s)            \
@@ -15,6 +16,7 @@
     TANGENTIAL_STORE(launch, k, (s).tangential);  \
     ROLLING_STORE(launch, k, (s).rolling);        \
     SOFTENING_STORE(launch, k, (s).softening);    \
+    EXPANSION_STORE(launch, k, (s).expansion);    \
     DISSIPATION_STORE(launch, k, (s).dissipation);\
     LEDGER_STORE(launch, k, (s).ledger)
 

@@ -1,9 +1,9 @@
 /* The particle stage: gathers the contacts of a grain in slot order, adds what acts on the grain itself, and advances it. */
 #define PARTICLE_FIELDS(READ, WRITE)                                                                                              \
-    READ(uint, slot_offset) READ(int, slots) READ(real, force) READ(exact, radius) READ(real, mass) WRITE(exact, position) WRITE(exact, velocity)   \
+    READ(uint, slot_offset) READ(int, slots) READ(real, force) RADIUS_OWN(READ, WRITE) READ(real, mass) WRITE(exact, position) WRITE(exact, velocity)   \
     READ(exact, built_position) MOTION_PARTICLE_FIELDS(READ, WRITE) \
     ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE) TEMPERATURE_PARTICLE_FIELDS(READ, WRITE)                \
-    SUBSTANCE_PARTICLE_FIELDS(READ, WRITE) ENVIRONMENT_PARTICLE_FIELDS(READ, WRITE) CONDUCTION_PARTICLE_FIELDS(READ, WRITE)             \
+    SUBSTANCE_PARTICLE_FIELDS(READ, WRITE) RADIUS_PARTICLE_FIELDS(READ, WRITE) EXPANSION_PARTICLE_FIELDS(READ, WRITE) ENVIRONMENT_PARTICLE_FIELDS(READ, WRITE) CONDUCTION_PARTICLE_FIELDS(READ, WRITE)             \
     SOURCE_PARTICLE_FIELDS(READ, WRITE) THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE) MODULUS_PARTICLE_FIELDS(READ, WRITE) DISSIPATION_PARTICLE_FIELDS(READ, WRITE) DISSIPATION_HEAT_PARTICLE_FIELDS(READ, WRITE) LEDGER_PARTICLE_FIELDS(READ, WRITE)           \
     INTEGRATOR_PARTICLE_FIELDS(READ, WRITE)
 #define PARTICLE_DECLARE PARTICLE_FIELDS(DECLARE_READ, DECLARE_WRITE)
@@ -47,8 +47,9 @@ INLINE void particle_grain(const clast_launch *launch, int i, grain *g PARTICLE_
     ENVIRONMENT_AT(launch, g);
 }
 
-/* One thermal step of grain i, from the flows at its start. What a prescribed temperature takes comes from a source. */
-INLINE void particle_heat(const clast_launch *launch, int i, const grain *g, grain_heat *h PARTICLE_DECLARE)
+/* One thermal step of grain i, from the flows at its start. What a prescribed temperature takes comes from a source. Returns what the radius
+ * grows by. */
+INLINE real particle_heat(const clast_launch *launch, int i, const grain *g, grain_heat *h PARTICLE_DECLARE)
 {
     real dt = number(launch->dt), apart = g->surroundings - g->temperature, capacity = temperature_capacity(g);
     real absorbed = SOURCE_HEAT(launch, i, g), given = absorbed + generation_heat(g) + THERMAL_GROUP_HEAT(launch, i);
@@ -66,26 +67,30 @@ INLINE void particle_heat(const clast_launch *launch, int i, const grain *g, gra
     TEMPERATURE_STORE(i, held);
     MODULUS_STORE(i, g, held);
     HEAT_TALLY_ADD(i, h);
+    return RADIUS_STORE(i, g, held);
 }
 
-/* One step of grain i; returns the square of its displacement since the table was built, relative to the common one. */
-INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t PARTICLE_DECLARE)
+/* One step of grain i, whose radius has grown; returns the square of its displacement since the table was built, relative to the common one, its
+ * growth included. */
+INLINE real particle_advance(const clast_launch *launch, int i, real grown, vec3 f, vec3 t PARTICLE_DECLARE)
 {
     real dt = number(launch->dt), kick = number(launch->kick), r = GRAIN_RADIUS(i);
     real m = mass[i], inertia = R(0.4) * m * r * r;
     int mover_i = MOTION_GRAIN(i);
-    precise3 x = PRECISE_GRAIN3(position, i), v = PRECISE_GRAIN3(velocity, i), w = ROTATION_PRECISE(launch, i);
+    precise3 x = PRECISE_GRAIN3(position, i), v = PRECISE_GRAIN3(velocity, i), w = RADIUS_SPIN(i, ROTATION_PRECISE(launch, i), grown);
+    precise3 turning = RADIUS_SPIN(i, INTEGRATOR_SPIN(i, ROTATION_PRECISE(launch, i)), grown);
     __global const clast_mover *row = MOTION_ROW(launch);
     f = add_scaled(f, m, from3(launch->gravity));
     vec3 damped = body_force(f, rounded3(v), m), damped_t = body_force(t, rounded3(w), inertia);
     vec3 a = scale(R(1.0) / m, damped);
     precise3 v1 = integrate_velocity(INTEGRATOR_VELOCITY(i, v), a, kick);
-    precise3 w1 = rotation_advance(INTEGRATOR_SPIN(i, w), damped_t, inertia, kick);
+    precise3 w1 = rotation_advance(turning, damped_t, inertia, kick);
     precise3 x1 = motion_position(row, mover_i, integrate_position(x, v1, dt), x);
     precise3 v2 = motion_velocity(row, mover_i, INTEGRATOR_AHEAD(v1, integrate_velocity(v1, a, R(0.5) * dt)), x1);
     precise3 w2 = motion_spin(row, mover_i, INTEGRATOR_AHEAD(w1, rotation_advance(w1, damped_t, inertia, R(0.5) * dt)));
     grain_step step = {m, inertia, kick, rounded3(INTEGRATOR_VELOCITY(i, v)), rounded3(motion_velocity(row, mover_i, v1, x1)),
-                       rounded3(INTEGRATOR_SPIN(i, w)), rounded3(motion_spin(row, mover_i, w1)), f, damped, t, damped_t, mover_i >= 0};
+                       rounded3(turning), rounded3(motion_spin(row, mover_i, w1)), f, damped, t, damped_t, mover_i >= 0,
+                       RADIUS_SPIN_WORK(i, rounded3(INTEGRATOR_SPIN(i, ROTATION_PRECISE(launch, i))), grown, inertia)};
     (void)step;
     INTEGRATOR_KEEP_VELOCITY(i, motion_velocity(row, mover_i, v1, x1));
     INTEGRATOR_KEEP_SPIN(i, motion_spin(row, mover_i, w1));
@@ -99,7 +104,8 @@ INLINE real particle_advance(const clast_launch *launch, int i, vec3 f, vec3 t P
     LEDGER_ADVANCE(launch, i, &step);
     apart3 since_built = apart_less(apart_of(x1, PRECISE_GRAIN3(built_position, i)), PRECISE3(launch->drift));
     vec3 moved = apart_vector(periodic_nearest(launch, since_built));
-    return dot3(moved, moved);
+    GROWTH_KEEP(i, grown);
+    return RADIUS_TRAVEL(i, dot3(moved, moved));
 }
 
 /* The grain at a place in a block. One that has used up half the skin, or has left the domain, stops the batch after this step. */
@@ -111,8 +117,8 @@ INLINE void particle_step(const clast_launch *launch, __global clast_control *co
     grain_heat h;
     particle_gather(launch, block, lane, &f, &t, &h PARTICLE_PASS);
     particle_grain(launch, i, &g PARTICLE_PASS);
-    particle_heat(launch, i, &g, &h PARTICLE_PASS);
-    real travel2 = particle_advance(launch, i, f, t PARTICLE_PASS);
+    real grown = particle_heat(launch, i, &g, &h PARTICLE_PASS);
+    real travel2 = particle_advance(launch, i, grown, f, t PARTICLE_PASS);
     if (i < launch->particle_count && !(travel2 <= number(launch->travel2))) {
         /* whoever writes, writes the same */
         control->reason = CLAST_HALT_TRAVEL;

@@ -56,6 +56,8 @@ static const law *const every_law[] = {
     &law_heat_tally,
     &law_exponential_softening,
     &law_softening_tracked,
+    &law_linear_expansion,
+    &law_expansion_tracked,
     &law_fraction,
     &law_dissipation_tracked,
     &law_dissipation_synchronous,

@@ -7,7 +7,7 @@
 
 /* ---- beds ---- */
 
-typedef enum variant { IN_A_BOX, MOVING_WALL, PERIODIC, SHEARED, VARIANTS } variant;
+typedef enum variant { IN_A_BOX, MOVING_WALL, PERIODIC, SHEARED, EXPANDING, VARIANTS } variant;
 
 #define COMMON                                                                                                               \
     "gravity_m_s2: [4, 2, -40]\n"                                                                                            \
@@ -22,9 +22,9 @@ typedef enum variant { IN_A_BOX, MOVING_WALL, PERIODIC, SHEARED, VARIANTS } vari
 #define GRAINS                                                                                                                        \
     "particles:\n"                                                                                                                    \
     "  - {name: light, material: glass, generator: random, count: 160, radius_m: {distribution: uniform, low: 7.0e-4, high: 1.2e-3}," \
-    " region: {low_m: [0, 0, 0.002], high_m: [0.014, 0.014, 0.0085]}, velocity_m_s: [0.3, 0.1, -1]}\n"                                \
+    " region: {low_m: [0, 0, 0.002], high_m: [0.014, 0.014, 0.0085]}, velocity_m_s: [0.3, 0.1, -1], temperature_k: 300}\n"                                \
     "  - {name: heavy, material: lead, generator: random, count: 60, radius_m: 9.0e-4,"                                               \
-    " region: {low_m: [0, 0, 0.0085], high_m: [0.014, 0.014, 0.011]}, velocity_m_s: [-0.3, 0.1, -1.2]}\n"
+    " region: {low_m: [0, 0, 0.0085], high_m: [0.014, 0.014, 0.011]}, velocity_m_s: [-0.3, 0.1, -1.2], temperature_k: 350}\n"
 
 static const char *const scenes[VARIANTS] = {
     [IN_A_BOX] = COMMON GRAINS "walls: [{name: box, shape: box, low_m: [0, 0, 0.002], high_m: [0.014, 0.014, 0.03], open: [z_high]}]\n",
@@ -44,6 +44,21 @@ static const char *const scenes[VARIANTS] = {
     " amplitude_m: 3.0e-4, frequency_hz: 53}]}\n"
     "output: {observables: [dissipated_normal, work_groups]}\n"
     "domain: {low_m: [0, 0, -0.01], high_m: [0.014, 0.014, 0.05], periodic: [x, y]}\n",
+    /* grains that heat up, grow by a few hundredths, and soften: the skin is used up by growth, too */
+    [EXPANDING] = "gravity_m_s2: [4, 2, -40]\n"
+    "effects: [{slot: normal, law: hertz}, {slot: tangential, law: mindlin}, {slot: rolling, law: elastic_plastic}, {slot: conduction, law: overlap_area},"
+    " {slot: radius, law: linear_expansion}, {slot: modulus, law: exponential_softening}, {slot: heat_generation, law: volumetric},"
+    " {slot: dissipation_heat, law: fraction}]\n"
+    "materials:\n"
+    "  - {name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3, conductivity_w_mk: 10, specific_heat_j_kgk: 100,"
+    " expansion_1_k: 5.0e-4, softening_temperature_k: 320, heat_generation_w_m3: 1.0e9}\n"
+    "  - {name: lead, density_kg_m3: 9000, youngs_modulus_pa: 4.0e6, poissons_ratio: 0.4, conductivity_w_mk: 60, specific_heat_j_kgk: 50,"
+    " expansion_1_k: -2.0e-4, softening_temperature_k: 400, heat_generation_w_m3: 2.0e9}\n"
+    "interactions:\n"
+    "  - {between: default, restitution: 0.5, friction_static: 0.4, friction_dynamic: 0.3, rolling_friction: 0.02}\n"
+    "stages: [{name: go, until: {steps: 1}, step_s: 1.0e-5}]\n" GRAINS
+    "output: {observables: [work_expansion, heat_walls]}\n"
+    "walls: [{name: box, shape: box, low_m: [0, 0, 0.002], high_m: [0.014, 0.014, 0.03], open: [z_high], temperature_k: 500}]\n",
 };
 
 /* ---- runs ---- */
@@ -188,7 +203,7 @@ static void test_bits(void **state)
     compare(v, &reference, (manner){.rebuild_every = 10}, "a table every ten steps");
     compare(v, &reference, (manner){.table = "step_form: two_kernels"}, "two kernels a step");
     compare(v, &reference, (manner){.table = "chunk_records: 64, step_form: two_kernels"}, "steps in chunks");
-    if (v == MOVING_WALL || v == SHEARED) {
+    if (v == MOVING_WALL || v == SHEARED || v == EXPANDING) {
         compare(v, &reference, (manner){.table = "skin_m: 4.0e-5"}, "a thin skin");
         compare(v, &reference, (manner){.table = "batch_steps: 1000"}, "batches of 1000");
         compare(v, &reference, (manner){.chunk = 37}, "calls of 37 steps");
@@ -441,6 +456,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(test_bits, (void *)MOVING_WALL),
         cmocka_unit_test_prestate(test_bits, (void *)PERIODIC),
         cmocka_unit_test_prestate(test_bits, (void *)SHEARED),
+        cmocka_unit_test_prestate(test_bits, (void *)EXPANDING),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_order_of_grains),
         cmocka_unit_test(test_origin),

@@ -46,6 +46,12 @@ domain: {low_m: [-1, -1, -1], high_m: [0.0095, 1, 1], leaving: delete}
 guards: {every_steps: 20}
 stages: [{name: go, until: {time_s: 0.02}, step_s: 1.0e-5}]
 """ + OUTPUT.format(0.004).replace("{{", "{") + "checkpoint_every_s: 0.0123}\n"
+HOT = FIXED.replace("elastic_plastic}]", "elastic_plastic}, {slot: conduction, law: overlap_area}, {slot: heat_generation, law: volumetric}, "
+                    "{slot: radius, law: linear_expansion}, {slot: modulus, law: exponential_softening}]") \
+    .replace("poissons_ratio: 0.3", "poissons_ratio: 0.3, conductivity_w_mk: 10, specific_heat_j_kgk: 100, expansion_1_k: 5.0e-4, "
+             "softening_temperature_k: 320, heat_generation_w_m3: 1.0e9") \
+    .replace("velocity_m_s: [0.3", "temperature_k: 300, velocity_m_s: [0.3") \
+    .replace("spin]", "spin, temperature]").replace("work_gravity]", "work_gravity, work_expansion, temperature_max]")
 LONG = BED + """
 stages: [{name: go, until: {time_s: 60}, step_s: STEP}]
 output: {every_s: 0.005, fields: [position, velocity, spin], observables: [kinetic_energy], observables_every_s: 0.001}
@@ -152,6 +158,16 @@ class Resume(Case):
         self.check(FIXED + "precision: mixed\n")
         self.check(AUTOMATIC + "precision: mixed\nintegrator: velocity_verlet\n")
         self.check(STAGES.replace("CHECKPOINT", "0.0171") + "precision: mixed\n")
+
+    def test_growing_grains(self):
+        """Temperatures, radii, moduli, and the work of their growth."""
+        self.assertIn("linear_expansion", HOT)
+        _, whole = self.check(HOT)
+        with h5py.File(whole, "r") as file:
+            radius = file["particles/all/radius/value"][...]
+        self.assertTrue(numpy.all(radius[-1] > 1.01 * radius[0]))
+        self.assertGreater(observables(whole)["work_expansion"][-1], 0)
+        self.check(HOT + "precision: mixed\nintegrator: velocity_verlet\n")
 
     def test_grains_that_left(self):
         _, whole = self.check(LEAVING)
