@@ -48,12 +48,10 @@ static void complete(live_laws *live)
         live->law[SLOT_TEMPERATURE] = &law_temperature_pairs;
     if (live->law[SLOT_LEDGER] || live->law[SLOT_DISSIPATION_HEAT])
         live->law[SLOT_DISSIPATION] = live->law[SLOT_INTEGRATOR] ? &law_dissipation_synchronous : &law_dissipation_tracked;
+    if (live->law[SLOT_EXPANSION])
+        live->law[SLOT_RADIUS] = &law_linear_expansion;
     if (live->law[SLOT_MODULUS] || live->law[SLOT_RADIUS] || live->law[SLOT_DISSIPATION_HEAT])
         live->law[SLOT_TEMPERATURE] = &law_temperature_grains;
-    if (live->law[SLOT_EXPANSION]) {
-        live->law[SLOT_RADIUS] = &law_linear_expansion;
-        live->law[SLOT_TEMPERATURE] = &law_temperature_grains;
-    }
     complete_heat(live);
     live->frozen = live->law[SLOT_TEMPERATURE] != NULL;
     const law *verlet = live->law[SLOT_ROTATION] ? &law_velocity_verlet_spin : &law_velocity_verlet;

@@ -440,7 +440,7 @@ static const bad_scene bad_scenes[] = {
     {"high_m: [1, 1, 1]}", "high_m: [1, 1, 1], periodic: [w]}", "`periodic` must be one of `x`, `y`, `z`; it is `w`"},
     {"high_m: [1, 1, 1]}", "high_m: [1, 1, 1], periodic: x}", "`periodic` must be a list"},
     /* effects */
-    {"slot: normal", "slot: induction", "there is no slot called `induction`; this version has `modulus`"},
+    {"slot: normal", "slot: induction", "there is no slot called `induction`; this version has `radius`"},
     {"slot: normal", "slot: periodic", "there is no slot called `periodic`"},
     {"law: hertz", "law: jkr", "the slot `normal` has no law called `jkr`; this version has `hertz`, `linear`"},
     {"{slot: normal, law: hertz}", "hertz", "an effect must be a mapping"},
