@@ -195,7 +195,7 @@ void beams_free(simulation *sim)
 static status run_grains(simulation *sim, const char *name, int own, failure *why)
 {
     TRY(launch_bind(sim, name, own, why));
-    return launch_run(sim, launch_kernel(sim, name), name, sim->count, CLAST_BLOCK, why);
+    return launch_run(sim, launch_kernel(sim, name), name, sim->count, sim->block, why);
 }
 
 static status write_columns(simulation *sim, failure *why)

@@ -16,6 +16,7 @@ typedef struct bench_options {
     const char *csv_path;    /* the same as CSV, or NULL; not of a bed */
     double seconds;          /* that `effects` may take about */
     const char *only;        /* of the cases of `effects` those whose name has one of these words, by commas; NULL: all */
+    bool forget;             /* `tune`: drops what was kept, and measures nothing */
     const char *scenes;      /* folder that `effects` writes the scenes of its cases to, and measures nothing; or NULL */
     const char *device;      /* as device_choose */
     const char *kernels;     /* directory of kernels instead of the embedded ones, or NULL */
@@ -28,6 +29,8 @@ status bench_bed(const bench_options *options, failure *why);
 status bench_effects(const bench_options *options, failure *why);
 /* bench_kernels.c: time and bytes of every kernel. */
 status bench_kernels(const bench_options *options, failure *why);
+/* bench_tune.c: finds what is fastest on the device, and keeps it. */
+status bench_tune(const bench_options *options, failure *why);
 
 /* Step of the bed, s. */
 #define BENCH_STEP_S 1.0e-5

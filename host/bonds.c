@@ -84,7 +84,7 @@ static status find_inverse(simulation *sim, const clast_launch *launch, failure 
     sim->particles_stale = true;
     TRY_CL(clEnqueueFillBuffer(sim->device->queue, sim->where, &none, sizeof none, 0, 4 * (size_t)sim->stride, 0, NULL, NULL), "table_bond_inverse");
     TRY(launch_set(kernel, "table_bond_inverse", why, "Lmm", launch, sim->table.work[2], sim->where));
-    return launch_run(sim, kernel, "table_bond_inverse", sim->count, CLAST_BLOCK, why);
+    return launch_run(sim, kernel, "table_bond_inverse", sim->count, sim->block, why);
 }
 
 status bonds_keep(simulation *sim, const clast_launch *launch, int room, bool fill, failure *why)
@@ -102,7 +102,7 @@ status bonds_keep(simulation *sim, const clast_launch *launch, int room, bool fi
     TRY(launch_set(kernel, name, why, "Lmmmmmmmmmmmmmmii", launch, t->grid, store_find(sim, "position")->mem, table_radii(sim),
                    store_find(sim, "id")->mem, t->work[2], sim->where, t->owner[t->now], t->other[t->now], t->slot_offset[t->now], t->slots[t->now],
                    store_find(sim, field_bonded.name)->mem, first, second, third, room, t->old_wall_base));
-    return launch_run(sim, kernel, name, sim->count, CLAST_BLOCK, why);
+    return launch_run(sim, kernel, name, sim->count, sim->block, why);
 }
 
 /* Over all kinds of contacts in all stages, for the largest grains. */

@@ -1,5 +1,7 @@
 #include "device.h"
 
+#include "tuning.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
@@ -311,7 +313,7 @@ status device_choose(const device_info *list, int count, const char *choice, boo
 static status open_info(const device_info *info, device *out, failure *why)
 {
     cl_int code;
-    *out = (device){.info = *info};
+    *out = (device){.info = *info, .tuning = tuning_load(info)};
     const cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)info->platform, 0};
     out->context = clCreateContext(properties, 1, &info->id, NULL, NULL, &code);
     if (code != CL_SUCCESS)

@@ -18,10 +18,20 @@ typedef struct device_info {
     uint64_t argument_bytes;
 } device_info;
 
+/* What is fastest on the device (tuning.h). Results do not depend on it, but for the last bits of implicit steps of heat. */
+typedef struct tuning {
+    int block;         /* grains or records a work-group */
+    int batch_steps;   /* steps between two looks of the host */
+    int chunk_records; /* of large beds that go through the stages in chunks; 0: none do */
+    int loop_records;  /* beds of fewer go through many steps in one work-group */
+    bool measured;
+} tuning;
+
 typedef struct device {
     device_info info;
     cl_context context;
     cl_command_queue queue; /* in order */
+    tuning tuning;
 } device;
 
 /* Every device of every platform, in the order in which the loader lists them. No platform or no device: STATUS_DEVICE with what to

@@ -84,7 +84,7 @@ static status fit_arrays(simulation *sim, failure *why)
 status frozen_run_grains(simulation *sim, const char *name, int bound, failure *why)
 {
     TRY(launch_bind(sim, name, bound, why));
-    return launch_run(sim, launch_kernel(sim, name), name, sim->count, CLAST_BLOCK, why);
+    return launch_run(sim, launch_kernel(sim, name), name, sim->count, sim->block, why);
 }
 
 /* Heat of walls that give a prescribed flow, from the records' flows as they stand. */
@@ -109,7 +109,7 @@ static status find_links(simulation *sim, failure *why)
     cl_kernel records = launch_kernel(sim, "heat_conductances"), links = launch_kernel(sim, "heat_frozen_links");
     TRY(launch_pass(records, "heat_conductances", &launch, why));
     TRY(launch_bind(sim, "heat_conductances", 1, why));
-    TRY(launch_run(sim, records, "heat_conductances", t->record_count, CLAST_BLOCK, why));
+    TRY(launch_run(sim, records, "heat_conductances", t->record_count, sim->block, why));
     TRY(launch_set(links, "heat_frozen_links", why, "Lmmmm", &launch, t->owner[t->now], t->other[t->now], f->link, f->conductance));
     return frozen_run_grains(sim, "heat_frozen_links", 5, why);
 }
@@ -321,7 +321,7 @@ static status run_stages(simulation *sim, const scheme *c, double step, failure 
         TRY(launch_set_from(kernel, "heat_frozen_stage", 6, why, sim->mixed ? "mmmmfffffii" : "mmmmdddddii", before, f->rises[(k + 1) % 3], f->start,
                             f->kept, c->mu[k], c->nu[k], c->slope[k] * step, c->start_slope[k] * step, c->weight[k] * step,
                             (cl_int)(sim->heat.vary ? k + 1 : 0), (cl_int)(k == 0)));
-        TRY(launch_run(sim, kernel, "heat_frozen_stage", sim->count, CLAST_BLOCK, why));
+        TRY(launch_run(sim, kernel, "heat_frozen_stage", sim->count, sim->block, why));
     }
     return STATUS_OK;
 }

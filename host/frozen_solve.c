@@ -45,15 +45,15 @@ static status fit_arrays(simulation *sim, failure *why)
 
 static status run_blocks(simulation *sim, const char *name, failure *why)
 {
-    return launch_run(sim, launch_kernel(sim, name), name, sim->count, CLAST_BLOCK, why);
+    return launch_run(sim, launch_kernel(sim, name), name, sim->count, sim->block, why);
 }
 
 static status fold(simulation *sim, int what, failure *why)
 {
     cl_kernel kernel = launch_kernel(sim, "heat_frozen_cg_fold");
-    cl_int groups = (cl_int)((sim->count + CLAST_BLOCK - 1) / CLAST_BLOCK);
+    cl_int groups = (cl_int)((sim->count + sim->block - 1) / sim->block);
     TRY(launch_set(kernel, "heat_frozen_cg_fold", why, "mimi", sim->partial, groups, sim->frozen.scalar, (cl_int)what));
-    return launch_run(sim, kernel, "heat_frozen_cg_fold", CLAST_BLOCK, CLAST_BLOCK, why);
+    return launch_run(sim, kernel, "heat_frozen_cg_fold", sim->block, sim->block, why);
 }
 
 static status bind_iteration(simulation *sim, failure *why)
@@ -81,7 +81,7 @@ static status solve(simulation *sim, double to, failure *why)
 {
     frozen_heat *f = &sim->frozen;
     cl_kernel begin = launch_kernel(sim, "heat_frozen_cg_begin");
-    TRY(observe_partial(sim, (sim->count + CLAST_BLOCK - 1) / CLAST_BLOCK, why));
+    TRY(observe_partial(sim, (sim->count + sim->block - 1) / sim->block, why));
     TRY(launch_set(begin, "heat_frozen_cg_begin", why, "mmmmm", f->residual, f->diagonal, f->x, f->p, sim->partial));
     TRY(run_blocks(sim, "heat_frozen_cg_begin", why));
     TRY(fold(sim, 0, why));
@@ -182,7 +182,7 @@ static status read_clusters(simulation *sim, clusters *c, failure *why)
     contact_table *t = &sim->table;
     clast_launch launch = launch_values(sim);
     cl_kernel kernel = launch_kernel(sim, "heat_frozen_sinks");
-    size_t n = (size_t)sim->stride, blocks = n / CLAST_BLOCK;
+    size_t n = (size_t)sim->stride, blocks = n / sim->block;
     TRY(frozen_set_network(sim, kernel, "heat_frozen_sinks", &launch, f->zero, why));
     TRY(launch_set_from(kernel, "heat_frozen_sinks", 6, why, "mmm", f->residual, f->slope, f->diagonal));
     TRY(frozen_run_grains(sim, "heat_frozen_sinks", 9, why));
@@ -214,7 +214,7 @@ static void join_clusters(const simulation *sim, clusters *c)
     for (int64_t i = 0; i < sim->count; i++)
         c->root[i] = i;
     for (int64_t i = 0; i < sim->count; i++)
-        for (uint32_t s = c->slot_offset[i / CLAST_BLOCK] + (uint32_t)(i % CLAST_BLOCK); s < c->slot_offset[i / CLAST_BLOCK + 1]; s += CLAST_BLOCK)
+        for (uint32_t s = c->slot_offset[i / sim->block] + (uint32_t)(i % sim->block); s < c->slot_offset[i / sim->block + 1]; s += sim->block)
             if (c->link[s] >= 0 && c->conductance[s] > 0.0) {
                 int64_t a = root_of(c, i), b = root_of(c, c->link[s]);
                 c->root[a > b ? a : b] = a > b ? b : a;
@@ -341,7 +341,7 @@ static status run_stages(simulation *sim, double step, bool *converged, failure 
         return STATUS_OK;
     TRY(weigh_flows(sim, first, 1, (1.0 - GAMMA) * step, false, why));
     TRY(launch_set(known, "heat_frozen_scale", why, sim->mixed ? "mmf" : "mmd", first, f->rises[0], (1.0 - GAMMA) / GAMMA));
-    TRY(launch_run(sim, known, "heat_frozen_scale", sim->count, CLAST_BLOCK, why));
+    TRY(launch_run(sim, known, "heat_frozen_scale", sim->count, sim->block, why));
     TRY(store_copy(sim, first, second, 0, 0, f->grain_bytes, why));
     TRY(hold(sim, second, 2, why));
     TRY(newton(sim, second, f->rises[0], sigma, 2, converged, why));

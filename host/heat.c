@@ -217,7 +217,7 @@ status heat_sum_areas(simulation *sim, const clast_launch *launch, failure *why)
     TRY(launch_set(kernel, "heat_areas", why, "Lmmii", launch, sim->control, sim->heat.areas, (cl_int)t->wall_base,
                    (cl_int)(t->wall_base + t->wall_record_count)));
     TRY(launch_bind(sim, "heat_areas", 5, why));
-    return launch_run(sim, kernel, "heat_areas", (int64_t)sim->scene->wall_count * CLAST_BLOCK, CLAST_BLOCK, why);
+    return launch_run(sim, kernel, "heat_areas", (int64_t)sim->scene->wall_count * sim->block, sim->block, why);
 }
 
 /* ---- stages ---- */
@@ -314,7 +314,7 @@ static status enqueue_limit(simulation *sim, double hottest, int64_t chunks, fai
     TRY(simulation_pose_now(sim, why));
     TRY(launch_pass(records, "heat_conductances", &launch, why));
     TRY(launch_bind(sim, "heat_conductances", 1, why));
-    TRY(launch_run(sim, records, "heat_conductances", sim->table.record_count, CLAST_BLOCK, why));
+    TRY(launch_run(sim, records, "heat_conductances", sim->table.record_count, sim->block, why));
     TRY(observe_partial(sim, LIMITS * chunks, why));
     TRY(launch_set(grains, "heat_limit", why, sim->mixed ? "Lmf" : "Lmd", &launch, sim->partial, hottest));
     TRY(launch_bind(sim, "heat_limit", 3, why));
@@ -350,9 +350,9 @@ status heat_enqueue_coefficients(simulation *sim, failure *why)
     TRY(heat_observe(sim, &sums, why));
     TRY(launch_pass(records, "heat_conductances", &launch, why));
     TRY(launch_bind(sim, "heat_conductances", 1, why));
-    TRY(launch_run(sim, records, "heat_conductances", sim->table.record_count, CLAST_BLOCK, why));
+    TRY(launch_run(sim, records, "heat_conductances", sim->table.record_count, sim->block, why));
     TRY(observe_partial(sim, sim->stride, why));
     TRY(launch_set(grains, "heat_surfaces", why, sim->mixed ? "Lmf" : "Lmd", &launch, sim->partial, hottest_possible(sim, sums.highest)));
     TRY(launch_bind(sim, "heat_surfaces", 3, why));
-    return launch_run(sim, grains, "heat_surfaces", sim->count, CLAST_BLOCK, why);
+    return launch_run(sim, grains, "heat_surfaces", sim->count, sim->block, why);
 }

@@ -187,12 +187,22 @@ static bool has_kernel(const simulation *sim, const char *name)
     return !strstr(name, "_walls") || sim->live.law[SLOT_WALLS];
 }
 
+/* Where it is the usual one, programs are as they were before the device was tuned, and so taken from the cache. */
+static void define_block(const simulation *sim, char *text, size_t size)
+{
+    size_t used = strlen(text);
+    if (sim->block != CLAST_BLOCK)
+        snprintf(text + used, size - used, "#define CLAST_BLOCK %d\n", sim->block);
+}
+
 status launch_open(simulation *sim, failure *why)
 {
     const char *files[64], *table_files[LIVE_TABLE_FILES];
     char constants[8192], table_constants[256];
     live_table_constants(&sim->live, table_constants, sizeof table_constants);
     live_constants(&sim->live, sim->scene, constants, sizeof constants);
+    define_block(sim, table_constants, sizeof table_constants);
+    define_block(sim, constants, sizeof constants);
     int count = live_files(&sim->live, files, 63);
     size_t used = strlen(constants);
     if (step_loop_wanted(sim)) {
@@ -261,7 +271,7 @@ clast_launch launch_values(const simulation *sim)
         .travel2 = travel * travel,
         .record_stride = sim->table.record_stride,
         .particle_count = (clast_i32)sim->count,
-        .first_wall_group = sim->table.wall_base / CLAST_BLOCK,
+        .first_wall_group = sim->table.wall_base / sim->block,
         .face_count = sim->face_count,
         .mover_count = sim->mover_count,
         .mixed = sim->mixed,

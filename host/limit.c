@@ -25,7 +25,7 @@ static status live_limit(simulation *sim, double *normal, double *turning, failu
     *normal = *turning = INFINITY;
     TRY(simulation_pose_now(sim, why));
     TRY(launch_pass(records, "limit_records", &launch, why));
-    TRY(launch_run(sim, records, "limit_records", t->record_count, CLAST_BLOCK, why));
+    TRY(launch_run(sim, records, "limit_records", t->record_count, sim->block, why));
     TRY(observe_partial(sim, 2 * chunks + 5, why));
     TRY(launch_set(grains, "limit_particles", why, torque ? "Lmmmmmmm" : "Lmmmmmm", &launch, t->slot_offset[t->now], t->slots[t->now],
                    store_find(sim, "force")->mem, store_find(sim, "radius")->mem, store_find(sim, "mass")->mem, sim->partial,

@@ -27,7 +27,7 @@ status observe_where(simulation *sim, failure *why)
     cl_kernel kernel = launch_kernel(sim, "table_where");
     TRY_CL(clEnqueueFillBuffer(sim->device->queue, sim->where, &none, sizeof none, 0, 4 * (size_t)sim->id_count, 0, NULL, NULL), "indices of ids");
     TRY(launch_set(kernel, "table_where", why, "Lmm", &launch, store_find(sim, "id")->mem, sim->where));
-    TRY(launch_run(sim, kernel, "table_where", sim->count, CLAST_BLOCK, why));
+    TRY(launch_run(sim, kernel, "table_where", sim->count, sim->block, why));
     sim->particles_stale = false;
     return STATUS_OK;
 }
@@ -62,9 +62,9 @@ status observe_velocities(simulation *sim, cl_mem *velocity, cl_mem *spin, failu
     launch.kick = 0.5 * sim->lag;
     TRY(simulation_pose_now(sim, why));
     TRY(launch_set(probe, "pair_probe", why, "L", &launch));
-    TRY(launch_run(sim, probe, "pair_probe", sim->table.record_count, CLAST_BLOCK, why));
+    TRY(launch_run(sim, probe, "pair_probe", sim->table.record_count, sim->block, why));
     TRY(launch_set(now, "particle_synchronise", why, "Lmm", &launch, sim->velocity_now, sim->spin_now));
-    TRY(launch_run(sim, now, "particle_synchronise", sim->count, CLAST_BLOCK, why));
+    TRY(launch_run(sim, now, "particle_synchronise", sim->count, sim->block, why));
     *velocity = sim->velocity_now;
     *spin = turning ? sim->spin_now : NULL;
     return STATUS_OK;
@@ -131,7 +131,7 @@ static status run_on_records(simulation *sim, const char *name, failure *why)
     launch.step = -1; /* before any at which a batch has halted */
     TRY(heat_sum_areas(sim, &launch, why));
     TRY(launch_pass(kernel, name, &launch, why));
-    return launch_run(sim, kernel, name, sim->table.record_count, CLAST_BLOCK, why);
+    return launch_run(sim, kernel, name, sim->table.record_count, sim->block, why);
 }
 
 status observe_flows(simulation *sim, failure *why)

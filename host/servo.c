@@ -342,7 +342,7 @@ status servo_step(simulation *sim, const clast_launch *launch, int rows, failure
     TRY(launch_set(kernel, "servo_stage", why, "Lmmmmmiiii", launch, sim->control, sim->drives.mem, sim->faces, t->other[t->now],
                    store_find(sim, "force")->mem, (cl_int)sim->drives.count, (cl_int)t->wall_base, (cl_int)(t->wall_base + t->wall_record_count),
                    (cl_int)rows));
-    return launch_run(sim, kernel, "servo_stage", CLAST_BLOCK, CLAST_BLOCK, why);
+    return launch_run(sim, kernel, "servo_stage", sim->block, sim->block, why);
 }
 
 status servo_end(simulation *sim, failure *why)

@@ -219,9 +219,10 @@ status simulation_create(const scene *scene, const bed *bed, device *device, con
         return fail(why, STATUS_ERROR, "out of memory");
     sim->scene = scene;
     sim->device = device;
+    sim->block = device->tuning.block;
     sim->kernels_directory = kernels_directory ? strdup(kernels_directory) : NULL;
     sim->id_count = sim->count = bed->count;
-    sim->stride = (bed->count + CLAST_BLOCK - 1) / CLAST_BLOCK * CLAST_BLOCK;
+    sim->stride = (bed->count + sim->block - 1) / sim->block * sim->block;
     sim->group_held = calloc((size_t)scene->group_count + 1, sizeof *sim->group_held);
     live_laws_of(scene, bed, &sim->all);
     sim->mixed = sim->all.law[SLOT_PRECISION] != NULL;
@@ -230,7 +231,7 @@ status simulation_create(const scene *scene, const bed *bed, device *device, con
     sim->reach = bonds_reach(scene, &sim->all, sim->radius_max);
     sim->table.skin_is_given = !isnan(scene->table.skin_m);
     sim->table.skin = sim->table.skin_is_given ? scene->table.skin_m : 0.1 * sim->mean_radius;
-    sim->batch_limit = scene->table.batch_steps > 0 ? scene->table.batch_steps : 64;
+    sim->batch_limit = scene->table.batch_steps > 0 ? scene->table.batch_steps : device->tuning.batch_steps;
     sim->batch_limit = sim->batch_limit > BATCH_STEPS_MAX ? BATCH_STEPS_MAX : sim->batch_limit;
     sim->stage = -1;
     TRY(bond_check(scene, bed, why));

@@ -127,6 +127,7 @@ typedef struct launch_watch {
 typedef struct simulation {
     const scene *scene;
     device *device;
+    int block;              /* grains or records a work-group, see CLAST_BLOCK */
     bool mixed;             /* precision of the device's numbers; the host's are double */
     double origin[3];       /* of the device's positions; 0 in double precision */
     char *kernels_directory;

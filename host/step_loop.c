@@ -4,11 +4,7 @@
 
 #include <stdlib.h>
 
-/* Records up to which one work-group is faster than two launches a step, by device class (docs/performance.md). Under pocl a work-group is
- * one thread's; on a GPU it has one multiprocessor, and a launch costs less. */
-#define LOOP_RECORDS_CPU 1800
-#define LOOP_RECORDS_GPU 1000
-
+/* Under pocl a work-group is one thread's; on a GPU it has one multiprocessor, and a launch costs less. */
 #define LOOP_ITEMS_GPU 512
 
 int step_loop_items(const simulation *sim)
@@ -16,9 +12,10 @@ int step_loop_items(const simulation *sim)
     return sim->device->info.cpu ? 1 : LOOP_ITEMS_GPU;
 }
 
+/* Records up to which one work-group is faster than two launches a step (docs/performance.md). */
 static int loop_records(const simulation *sim)
 {
-    return sim->device->info.cpu ? LOOP_RECORDS_CPU : LOOP_RECORDS_GPU;
+    return sim->device->tuning.loop_records;
 }
 
 /* A grain has at least a record in any bed that is not dilute. Where walls give a heat flow, their areas are summed in a launch of its own

@@ -11,8 +11,6 @@
 #include <limits.h>
 #include <stdlib.h>
 
-/* Records a chunk, by measurement (docs/performance.md): a power of two. */
-#define CHUNK_RECORDS 32768
 /* Beds with fewer chunks than this go through the stages whole. */
 #define CHUNKS_LEAST 4
 /* Records of a chunk for each block in a group: 16 blocks go together in the usual chunk, so that ragged borders make no small launches. */
@@ -30,9 +28,10 @@ typedef struct planning {
 
 static int chunk_records(const simulation *sim)
 {
-    int64_t asked = sim->scene->table.chunk_records, size = CLAST_BLOCK;
+    int64_t asked = sim->scene->table.chunk_records, size = sim->block;
+    int usual = sim->device->tuning.chunk_records;
     if (asked == 0)
-        return sim->device->info.cpu && sim->table.wall_base >= CHUNKS_LEAST * CHUNK_RECORDS ? CHUNK_RECORDS : 0;
+        return usual > 0 && sim->table.wall_base >= CHUNKS_LEAST * (int64_t)usual ? usual : 0;
     while (size < asked && size < (1 << 30))
         size *= 2;
     return size < sim->table.wall_base ? (int)size : 0;
@@ -61,14 +60,14 @@ static status add_piece(step_plan *plan, bool pairs, int first, int count, int s
 
 static int blocks_of(const simulation *sim)
 {
-    return (int)((sim->count + CLAST_BLOCK - 1) / CLAST_BLOCK);
+    return (int)((sim->count + sim->block - 1) / sim->block);
 }
 
 static status plan_whole(simulation *sim, failure *why)
 {
     step_plan *plan = &sim->plan;
     plan->chunk_records = plan->force_records = 0;
-    TRY(add_piece(plan, true, 0, sim->table.record_count / CLAST_BLOCK, 0, why));
+    TRY(add_piece(plan, true, 0, sim->table.record_count / sim->block, 0, why));
     return add_piece(plan, false, 0, blocks_of(sim), 0, why);
 }
 
@@ -79,7 +78,7 @@ static status find_last_records(simulation *sim, planning *p, failure *why)
     contact_table *t = &sim->table;
     cl_kernel kernel = launch_kernel(sim, "table_last_records");
     TRY(launch_set(kernel, "table_last_records", why, "mmmii", t->slot_offset[t->now], t->slots[t->now], t->work[0], t->wall_base, p->blocks));
-    TRY(launch_run(sim, kernel, "table_last_records", p->blocks, CLAST_BLOCK, why));
+    TRY(launch_run(sim, kernel, "table_last_records", p->blocks, sim->block, why));
     return store_read(sim, t->work[0], 0, 4 * (uint64_t)p->blocks, p->last, why);
 }
 
@@ -98,11 +97,11 @@ static void wait_in_groups(planning *p)
 static status find_releases(simulation *sim, planning *p, failure *why)
 {
     contact_table *t = &sim->table;
-    int record_groups = t->wall_base / CLAST_BLOCK, per_chunk = p->chunk / CLAST_BLOCK;
+    int record_groups = t->wall_base / sim->block, per_chunk = p->chunk / sim->block;
     cl_kernel kernel = launch_kernel(sim, "table_releases");
     TRY(store_write(sim, t->work[0], 0, 4 * (uint64_t)p->blocks, p->last, why));
     TRY(launch_set(kernel, "table_releases", why, "mmmmii", t->owner[t->now], t->other[t->now], t->work[0], t->match, t->pair_count, record_groups));
-    TRY(launch_run(sim, kernel, "table_releases", record_groups, CLAST_BLOCK, why));
+    TRY(launch_run(sim, kernel, "table_releases", record_groups, sim->block, why));
     TRY(store_read(sim, t->match, 0, 4 * (uint64_t)record_groups, p->release, why));
     for (int c = 0; c < p->chunks; c++) {
         int last = c;
@@ -146,7 +145,7 @@ static status add_blocks(step_plan *plan, const planning *p, int chunk, failure 
 static status add_pieces(simulation *sim, const planning *p, int wall_shift, failure *why)
 {
     step_plan *plan = &sim->plan;
-    int wall_group = sim->table.wall_base / CLAST_BLOCK, end = sim->table.record_count / CLAST_BLOCK, per_chunk = p->chunk / CLAST_BLOCK;
+    int wall_group = sim->table.wall_base / sim->block, end = sim->table.record_count / sim->block, per_chunk = p->chunk / sim->block;
     TRY(add_piece(plan, true, wall_group, end - wall_group, wall_shift, why));
     for (int c = 0; c < p->chunks; c++) {
         int first = c * per_chunk, shift = plan->force_records > 0 ? (c - p->place[c]) * p->chunk : 0;
@@ -183,7 +182,7 @@ static status place_slots(simulation *sim, const planning *p, int wall_shift, fa
     }
     TRY(store_write(sim, t->work[0], 0, 4 * (uint64_t)p->chunks, p->place, why));
     TRY(launch_set(kernel, "table_place", why, "mmmiiii", t->slots[t->now], t->work[0], t->placed, count, t->wall_base, p->chunk, wall_shift));
-    return launch_run(sim, kernel, "table_place", count, CLAST_BLOCK, why);
+    return launch_run(sim, kernel, "table_place", count, sim->block, why);
 }
 
 static status plan_chunks(simulation *sim, planning *p, failure *why)
@@ -211,7 +210,7 @@ status step_plan_make(simulation *sim, failure *why)
     p.together = p.chunk / CHUNK_PER_BLOCK > 1 ? p.chunk / CHUNK_PER_BLOCK : 1;
     p.groups = (p.blocks + p.together - 1) / p.together;
     p.last = calloc((size_t)p.blocks + 1, sizeof *p.last);
-    p.release = calloc((size_t)sim->table.wall_base / CLAST_BLOCK + 1, sizeof *p.release);
+    p.release = calloc((size_t)sim->table.wall_base / sim->block + 1, sizeof *p.release);
     p.place = calloc((size_t)p.chunks, sizeof *p.place);
     status result = p.last && p.release && p.place ? plan_chunks(sim, &p, why) : fail(why, STATUS_ERROR, "out of memory");
     free(p.last);
@@ -232,7 +231,7 @@ static status enqueue_piece(const simulation *sim, cl_command_queue queue, const
 {
     const char *name = piece->pairs ? "pair_stage" : "particle_stage";
     cl_kernel kernel = launch_kernel(sim, name);
-    size_t local = CLAST_BLOCK, items = (size_t)piece->count * local;
+    size_t local = sim->block, items = (size_t)piece->count * local;
     cl_event watched;
     bool watch = sim->watch && !event;
     launch->first_group = piece->first;

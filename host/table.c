@@ -9,7 +9,6 @@
 #include <time.h>
 
 #define SCAN_CHUNK 1024
-#define GROUP CLAST_BLOCK
 /* Reserve on growth, so that a bed that gets denser does not allocate at every table. */
 #define RESERVE 1.08
 /* Steps after a table at which it is asked whether a smaller skin would do; then twice as many. */
@@ -32,7 +31,7 @@ static double seconds(void)
 status table_create(simulation *sim, failure *why)
 {
     contact_table *t = &sim->table;
-    int64_t blocks = sim->stride / CLAST_BLOCK;
+    int64_t blocks = sim->stride / sim->block;
     t->record_stride = 0;
     for (int w = 0; w < 5; w++)
         TRY(store_buffer(sim, &t->work[w], 4 * (uint64_t)(sim->stride + 1), "the contact table", why));
@@ -184,12 +183,12 @@ static status sort_grains(simulation *sim, const clast_launch *launch, failure *
     cl_kernel bin = launch_kernel(sim, "table_bin"), order = launch_kernel(sim, "table_order"), inside = launch_kernel(sim, "table_order_cells");
     TRY(store_fill(sim, t->cell_count, 4 * (uint64_t)(cells + 1), why));
     TRY(launch_set(bin, "table_bin", why, "Lmmmmmm", launch, t->grid, position, radius, t->work[WORK_A], t->work[WORK_B], t->cell_count));
-    TRY(launch_run(sim, bin, "table_bin", sim->count, GROUP, why));
+    TRY(launch_run(sim, bin, "table_bin", sim->count, sim->block, why));
     TRY(scan(sim, t->cell_count, t->cell_start, cells + 1, why));
     TRY(launch_set(order, "table_order", why, "Lmmmm", launch, t->work[WORK_A], t->work[WORK_B], t->cell_start, t->work[WORK_C]));
-    TRY(launch_run(sim, order, "table_order", sim->count, GROUP, why));
+    TRY(launch_run(sim, order, "table_order", sim->count, sim->block, why));
     TRY(launch_set(inside, "table_order_cells", why, "mmmi", t->cell_start, id, t->work[WORK_C], cells + 1));
-    TRY(launch_run(sim, inside, "table_order_cells", cells + 1, GROUP, why));
+    TRY(launch_run(sim, inside, "table_order_cells", cells + 1, sim->block, why));
     if (t->grid_host.drop_outside) {
         cl_uint kept;
         TRY(store_read(sim, t->cell_start, 4 * (uint64_t)cells, sizeof kept, &kept, why));
@@ -205,7 +204,7 @@ static status permute_numbers(simulation *sim, const clast_launch *launch, cl_me
     cl_kernel kernel = launch_kernel(sim, name);
     cl_mem scratch = components > 3 ? sim->scratch4 : sim->built_position;
     TRY(launch_set(kernel, name, why, "Lmmmi", launch, sim->table.work[WORK_C], mem, scratch, components));
-    TRY(launch_run(sim, kernel, name, sim->count, GROUP, why));
+    TRY(launch_run(sim, kernel, name, sim->count, sim->block, why));
     return store_copy(sim, scratch, mem, 0, 0, store_item(sim, type) * (uint64_t)(sim->count * components), why);
 }
 
@@ -222,7 +221,7 @@ static status permute_fields(simulation *sim, const clast_launch *launch, failur
             continue;
         }
         TRY(launch_set(kernel, "table_permute_int", why, "Lmmm", launch, sim->table.work[WORK_C], mem, sim->table.work[WORK_B]));
-        TRY(launch_run(sim, kernel, "table_permute_int", sim->count, GROUP, why));
+        TRY(launch_run(sim, kernel, "table_permute_int", sim->count, sim->block, why));
         TRY(store_copy(sim, sim->table.work[WORK_B], mem, 0, 0, 4 * (uint64_t)sim->count, why));
     }
     return STATUS_OK;
@@ -245,7 +244,7 @@ static status count_records(simulation *sim, const clast_launch *launch, failure
     TRY(store_fill(sim, t->work[WORK_B], 4 * (uint64_t)sim->stride, why));
     TRY(launch_set(count, "table_count", why, "Lmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_A], t->work[WORK_B],
                    store_find(sim, "force")->mem, kept_partners(sim)));
-    TRY(launch_run(sim, count, "table_count", sim->stride, GROUP, why));
+    TRY(launch_run(sim, count, "table_count", sim->stride, sim->block, why));
     TRY(bonds_keep(sim, launch, kept_partners(sim), false, why));
     TRY(scan(sim, t->work[WORK_A], t->work[WORK_D], sim->stride, why));
     t->wall_record_count = 0;
@@ -254,13 +253,13 @@ static status count_records(simulation *sim, const clast_launch *launch, failure
     t->pair_count = (int)total;
     if (walls) {
         TRY(launch_set(walls, "table_count_walls", why, "Lmmmmmm", launch, t->grid, position, radius, sim->faces, t->work[WORK_A], t->work[WORK_B]));
-        TRY(launch_run(sim, walls, "table_count_walls", sim->stride, GROUP, why));
+        TRY(launch_run(sim, walls, "table_count_walls", sim->stride, sim->block, why));
         TRY(scan(sim, t->work[WORK_A], t->work[WORK_E], sim->stride, why));
         TRY(store_read(sim, t->work[WORK_E], 4 * (uint64_t)sim->stride, sizeof total, &total, why));
         t->wall_record_count = (int)total;
     }
-    t->wall_base = (int)round_up(t->pair_count, GROUP);
-    t->record_count = (int)round_up(t->wall_base + t->wall_record_count, GROUP);
+    t->wall_base = (int)round_up(t->pair_count, sim->block);
+    t->record_count = (int)round_up(t->wall_base + t->wall_record_count, sim->block);
     return STATUS_OK;
 }
 
@@ -271,7 +270,7 @@ static status fit_records(simulation *sim, failure *why)
     int64_t need = t->record_count;
     if (need <= t->record_capacity && t->record_capacity > 0)
         return STATUS_OK;
-    int64_t capacity = round_up((int64_t)((double)need * RESERVE) + GROUP, GROUP);
+    int64_t capacity = round_up((int64_t)((double)need * RESERVE) + sim->block, sim->block);
     int next = 1 - t->now;
     uint64_t old = 4 * (uint64_t)t->record_capacity, bytes = 4 * (uint64_t)capacity;
     TRY(grow(sim, &t->owner[next], old, bytes, why));
@@ -287,7 +286,7 @@ static status fit_slots(simulation *sim, int64_t slots, failure *why)
     contact_table *t = &sim->table;
     int next = 1 - t->now;
     if (slots > t->slot_capacity) {
-        t->slot_capacity = (int64_t)((double)slots * RESERVE) + GROUP;
+        t->slot_capacity = (int64_t)((double)slots * RESERVE) + sim->block;
         t->slots_outgrown[0] = t->slots_outgrown[1] = true;
     }
     if (!t->slots_outgrown[next] && t->slots[next])
@@ -306,25 +305,25 @@ static status fill_records(simulation *sim, const clast_launch *launch, int room
     cl_kernel fill = launch_kernel(sim, "table_fill"), walls = launch_kernel(sim, "table_fill_walls"), pad = launch_kernel(sim, "table_pad");
     TRY(launch_set(fill, "table_fill", why, "Lmmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_D], t->owner[next],
                    t->other[next], store_find(sim, "force")->mem, room));
-    TRY(launch_run(sim, fill, "table_fill", sim->count, GROUP, why));
+    TRY(launch_run(sim, fill, "table_fill", sim->count, sim->block, why));
     TRY(bonds_keep(sim, launch, room, true, why));
     TRY(launch_set(pad, "table_pad", why, "mmii", t->owner[next], t->other[next], t->pair_count, t->wall_base));
-    TRY(launch_run(sim, pad, "table_pad", t->wall_base - t->pair_count, GROUP, why));
+    TRY(launch_run(sim, pad, "table_pad", t->wall_base - t->pair_count, sim->block, why));
     int end = t->wall_base + t->wall_record_count;
     if (walls) {
         TRY(launch_set(walls, "table_fill_walls", why, "Lmmmmmmmi", launch, t->grid, position, radius, sim->faces, t->work[WORK_E], t->owner[next],
                        t->other[next], t->wall_base));
-        TRY(launch_run(sim, walls, "table_fill_walls", sim->count, GROUP, why));
+        TRY(launch_run(sim, walls, "table_fill_walls", sim->count, sim->block, why));
     }
     TRY(launch_set(pad, "table_pad", why, "mmii", t->owner[next], t->other[next], end, t->record_count));
-    return launch_run(sim, pad, "table_pad", t->record_count - end, GROUP, why);
+    return launch_run(sim, pad, "table_pad", t->record_count - end, sim->block, why);
 }
 
 static status fill_slots(simulation *sim, const clast_launch *launch, failure *why)
 {
     contact_table *t = &sim->table;
     int next = 1 - t->now, end = t->wall_base + t->wall_record_count;
-    int64_t blocks = sim->stride / CLAST_BLOCK;
+    int64_t blocks = sim->stride / sim->block;
     cl_mem id = store_find(sim, "id")->mem;
     cl_kernel widths = launch_kernel(sim, "table_widths"), slots = launch_kernel(sim, "table_slots"), sort = launch_kernel(sim, "table_sort_slots");
     TRY(launch_set(widths, "table_widths", why, "mm", t->work[WORK_B], t->width));
@@ -338,10 +337,10 @@ static status fill_slots(simulation *sim, const clast_launch *launch, failure *w
     TRY(store_fill(sim, t->work[WORK_A], 4 * (uint64_t)sim->stride, why));
     TRY(launch_set(slots, "table_slots", why, "mmmmmiii", t->owner[next], t->other[next], t->slot_offset[next], t->work[WORK_A], t->slots[next],
                    t->pair_count, t->wall_base, end));
-    TRY(launch_run(sim, slots, "table_slots", end, GROUP, why));
+    TRY(launch_run(sim, slots, "table_slots", end, sim->block, why));
     TRY(launch_set(sort, "table_sort_slots", why, "Lmmmmmmi", launch, t->owner[next], t->other[next], id, t->slot_offset[next], t->work[WORK_B],
                    t->slots[next], t->wall_base));
-    return launch_run(sim, sort, "table_sort_slots", sim->count, GROUP, why);
+    return launch_run(sim, sort, "table_sort_slots", sim->count, sim->block, why);
 }
 
 /* Every history of the old records into the new ones. Where nothing grew the force array, of three components as a history has at most, holds
@@ -370,7 +369,7 @@ static status carry_histories(simulation *sim, int64_t old_stride, failure *why)
             TRY(store_copy(sim, old, from, 0, 0, old_bytes, why));
         TRY(launch_set(carry, "table_carry", why, "mmmlliii", t->match, from, stored->mem, (clast_i64)old_stride, (clast_i64)t->record_stride,
                        t->record_count, field->components, field->components > 1));
-        TRY(launch_run(sim, carry, "table_carry", t->record_count, GROUP, why));
+        TRY(launch_run(sim, carry, "table_carry", t->record_count, sim->block, why));
         if (grown)
             store_release(sim, &old, old_bytes);
     }
@@ -387,7 +386,7 @@ static status match_records(simulation *sim, int old_wall_base, failure *why)
     TRY(launch_set(match, "table_match", why, "mmmmmmmmiiii", t->owner[next], t->other[next], t->work[WORK_C], t->owner[t->now], t->other[t->now],
                    t->slot_offset[t->now], t->slots[t->now], t->match, t->pair_count, t->wall_base, t->wall_base + t->wall_record_count,
                    old_wall_base));
-    TRY(launch_run(sim, match, "table_match", t->wall_base + t->wall_record_count, GROUP, why));
+    TRY(launch_run(sim, match, "table_match", t->wall_base + t->wall_record_count, sim->block, why));
     int rest = t->record_count - (t->wall_base + t->wall_record_count);
     return rest > 0 ? store_clear_ints(sim, t->match, t->wall_base + t->wall_record_count, rest, why) : STATUS_OK;
 }

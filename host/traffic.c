@@ -83,7 +83,7 @@ static double elements(const simulation *sim, extent extent, const char *kernel,
     case OF_SLOTS:
         return (double)t->slot_count;
     case OF_BLOCKS:
-        return (double)sim->stride / CLAST_BLOCK;
+        return (double)sim->stride / sim->block;
     case OF_CELLS:
         return (double)t->grid_host.cell_count;
     case OF_SCAN:
@@ -138,7 +138,7 @@ static double argument_traffic(simulation *sim, const char *kernel, const char *
 static double share_of(const simulation *sim, const char *kernel, size_t items)
 {
     double whole = strcmp(kernel, "pair_stage") == 0       ? (double)sim->table.record_count
-                   : strcmp(kernel, "particle_stage") == 0 ? (double)((sim->count + CLAST_BLOCK - 1) / CLAST_BLOCK * CLAST_BLOCK)
+                   : strcmp(kernel, "particle_stage") == 0 ? (double)((sim->count + sim->block - 1) / sim->block * sim->block)
                                                            : (double)items;
     return whole > 0.0 ? (double)items / whole : 0.0;
 }
@@ -175,7 +175,7 @@ static status count_arguments(cl_kernel kernel, const char *name, int *out, fail
 status traffic_of_step(simulation *sim, step_traffic *out, failure *why)
 {
     cl_kernel pair = launch_kernel(sim, "pair_stage"), particle = launch_kernel(sim, "particle_stage");
-    size_t grains = ((size_t)sim->count + CLAST_BLOCK - 1) / CLAST_BLOCK * CLAST_BLOCK;
+    size_t grains = (size_t)((sim->count + sim->block - 1) / sim->block * sim->block);
     TRY(traffic_of_launch(sim, pair, "pair_stage", (size_t)sim->table.record_count, &out->pair_bytes, why));
     TRY(traffic_of_launch(sim, particle, "particle_stage", grains, &out->particle_bytes, why));
     TRY(count_arguments(pair, "pair_stage", &out->pair_arguments, why));

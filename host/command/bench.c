@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { KEY_PRECISION = 256, KEY_ROLLING, KEY_EFFECTS, KEY_EXPORT, KEY_JSON, KEY_CSV, KEY_SECONDS, KEY_ONLY, KEY_SCENES };
+enum { KEY_PRECISION = 256, KEY_ROLLING, KEY_EFFECTS, KEY_EXPORT, KEY_JSON, KEY_CSV, KEY_SECONDS, KEY_ONLY, KEY_SCENES, KEY_FORGET };
 
 /* A benchmark, and the options that it takes beside device, kernels and number of particles. */
 typedef struct benchmark {
@@ -16,17 +16,17 @@ typedef struct benchmark {
     status (*run)(const bench_options *options, failure *why);
 } benchmark;
 
-static const benchmark benchmarks[] = {{"bed", bench_bed}, {"effects", bench_effects}, {"kernels", bench_kernels}};
+static const benchmark benchmarks[] = {{"bed", bench_bed}, {"effects", bench_effects}, {"kernels", bench_kernels}, {"tune", bench_tune}};
 #define BENCHMARKS (sizeof benchmarks / sizeof *benchmarks)
 
 static const benchmark *find_benchmark(const struct argp_state *state, const char *what)
 {
     if (!what)
-        option_refuse(state, "which benchmark? There are `bed`, `effects` and `kernels`");
+        option_refuse(state, "which benchmark? There are `bed`, `effects`, `kernels` and `tune`");
     for (size_t n = 0; n < BENCHMARKS; n++)
         if (strcmp(benchmarks[n].name, what) == 0)
             return &benchmarks[n];
-    option_refuse(state, "there is no benchmark `%s`; there are `bed`, `effects` and `kernels`", what);
+    option_refuse(state, "there is no benchmark `%s`; there are `bed`, `effects`, `kernels` and `tune`", what);
     return NULL;
 }
 
@@ -94,6 +94,9 @@ static error_t parse_bench(int key, char *argument, struct argp_state *state)
     case KEY_SCENES:
         input->options.scenes = argument;
         return 0;
+    case KEY_FORGET:
+        input->options.forget = true;
+        return 0;
     case ARGP_KEY_ARG:
         option_only(state, &input->what, argument);
         return 0;
@@ -116,6 +119,7 @@ static const struct argp_option bench_option[] = {
     {"csv", KEY_CSV, "FILE.csv", 0, "Write them as CSV (effects, kernels)", 0},
     {"seconds", KEY_SECONDS, "S", 0, "Time that `effects` may take, about 240", 0},
     {"only", KEY_ONLY, "WORD,...", 0, "Of the cases of `effects` those that have one of these words in their name", 0},
+    {"forget", KEY_FORGET, NULL, 0, "Drop what `tune` has kept for this device", 0},
     {"scenes", KEY_SCENES, "FOLDER", 0, "Write the scenes of `effects` there and measure nothing", 0},
     {0},
 };
@@ -123,8 +127,9 @@ static const struct argp_child bench_children[] = {{.argp = &device_options_argp
 static const struct argp bench_argp = {
     .options = bench_option,
     .parser = parse_bench,
-    .args_doc = "bed|effects|kernels",
-    .doc = "Time a settled bed in a box with five frictional walls: a step, what every law adds to it, or every kernel.\vA settled bed of up to 20,000 particles is made once and kept in"
+    .args_doc = "bed|effects|kernels|tune",
+    .doc = "Time a settled bed in a box with five frictional walls: a step, what every law adds to it, or every kernel; or find"
+            " what is fastest on this device and keep it for later runs (tune).\vA settled bed of up to 20,000 particles is made once and kept in"
            " ${XDG_CACHE_HOME:-~/.cache}/clast; larger beds are tiled from it.",
     .children = bench_children,
 };

@@ -22,8 +22,10 @@ typedef int64_t clast_i64;
 typedef int32_t clast_i32;
 #endif
 
-/* Particles a block: one work-group, and the unit of the sliced slot table. */
+/* Particles a block: one work-group, and the unit of the sliced slot table. A device that has been tuned may have another. */
+#ifndef CLAST_BLOCK
 #define CLAST_BLOCK 64
+#endif
 
 /* Passed by value to every stage. */
 typedef struct clast_launch {

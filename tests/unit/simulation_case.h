@@ -2,6 +2,7 @@
 #ifndef CLAST_TESTS_SIMULATION_CASE_H
 #define CLAST_TESTS_SIMULATION_CASE_H
 #include "simulation.h"
+#include "tuning.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -28,6 +29,8 @@ static inline device *case_device(void)
     failure why;
     if (!open && device_open("cpu", true, &opened, &why) != STATUS_OK && device_open(NULL, true, &opened, &why) != STATUS_OK)
         fail_msg("%s", why.text);
+    if (!open)
+        opened.tuning = tuning_default(&opened.info); /* what a user's machine has been tuned to is not what is tested */
     open = true;
     return &opened;
 }

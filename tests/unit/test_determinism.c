@@ -208,6 +208,11 @@ static void test_bits(void **state)
         compare(v, &reference, (manner){.table = "batch_steps: 1000"}, "batches of 1000");
         compare(v, &reference, (manner){.chunk = 37}, "calls of 37 steps");
         compare(v, &reference, (manner){.shift = 7.3e-4}, "another origin of the grid");
+        case_device()->tuning.block = 32; /* as a tuned device may have it */
+        compare(v, &reference, (manner){.table = "step_form: two_kernels"}, "work-groups of 32");
+        case_device()->tuning.block = 256;
+        compare(v, &reference, (manner){.table = "chunk_records: 256, step_form: two_kernels"}, "work-groups of 256, in chunks");
+        case_device()->tuning.block = CLAST_BLOCK;
     }
     free(reference.value);
 }
