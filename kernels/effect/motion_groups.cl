@@ -15,15 +15,15 @@ INLINE real motion_overlap(int mover_i, int mover_j, real overlap)
     return mover_i >= 0 && mover_j >= 0 ? R(0.0) : overlap;
 }
 
+/* Turned about the axis of the motion and shifted, with all bits: what a step loses of its turn would add up to a lag behind the walls. */
 INLINE precise3 motion_position(__global const clast_mover *movers, int mover, precise3 free, precise3 start)
 {
     if (mover < 0)
         return free;
     clast_mover m = movers[mover];
-    vec3 axis = from3(m.axis), arm = rounded3(precise3_sub(start, PRECISE3(m.pivot)));
-    vec3 swing = cross3(axis, arm);
-    vec3 turned = add_scaled(scale(number(m.sine), swing), number(m.versine), cross3(axis, swing));
-    return precise3_add(precise3_add(start, precise3_from(turned)), PRECISE3(m.shift));
+    precise3 axis = PRECISE3(m.axis), swing = precise3_cross(axis, precise3_sub(start, PRECISE3(m.pivot)));
+    precise3 turned = precise3_add(precise3_scale(precise_load(m.sine), swing), precise3_scale(precise_load(m.versine), precise3_cross(axis, swing)));
+    return precise3_add(precise3_add(start, turned), PRECISE3(m.shift));
 }
 
 INLINE precise3 motion_velocity(__global const clast_mover *movers, int mover, precise3 free, precise3 x)

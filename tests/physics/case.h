@@ -1,12 +1,13 @@
 /* A scene from text, run step by step and read: what the tests of the physics share. Every failure of the program ends the test with the
- * program's own message. CLAST_KERNELS names a directory of kernels to test instead of the embedded ones, CLAST_TEST_SET a setting
- * (`integrator=velocity_verlet`) that every scene is given. */
+ * program's own message. CLAST_KERNELS names a directory of kernels to test instead of the embedded ones, CLAST_TEST_SET settings that every
+ * scene is given (settings.h). */
 #ifndef CLAST_TESTS_CASE_H
 #define CLAST_TESTS_CASE_H
 #include "bed.h"
 #include "device.h"
 #include "restitution.h"
 #include "scene.h"
+#include "settings.h"
 #include "simulation.h"
 
 #include <math.h>
@@ -75,13 +76,6 @@ typedef struct physics_case {
             fail_msg("%s", must_why_.text); \
     } while (0)
 
-/* True where the scenes of this run advance by velocity Verlet. */
-static inline bool case_verlet(void)
-{
-    const char *set = getenv("CLAST_TEST_SET");
-    return set && strstr(set, "velocity_verlet");
-}
-
 /* One device for all cases of a program. */
 static inline device *case_device(void)
 {
@@ -97,8 +91,9 @@ static inline physics_case case_open(text *t)
     physics_case c = {0};
     if (!strstr(t->at, "\nstages:"))
         put(t, "\nstages: [{name: run, until: {steps: 1}}]\n");
-    char *set = getenv("CLAST_TEST_SET");
-    MUST(scene_read_text(t->at, "case.yaml", set ? 1 : 0, &set, &c.scene, why));
+    settings set;
+    settings_read(&set);
+    MUST(scene_read_text(t->at, "case.yaml", set.count, set.at, &c.scene, why));
     MUST(bed_generate(c.scene, &c.bed, why));
     MUST(simulation_create(c.scene, &c.bed, case_device(), getenv("CLAST_KERNELS"), &c.sim, why));
     MUST(simulation_begin_stage(c.sim, 0, why));
@@ -196,6 +191,35 @@ static inline step_limit case_limit(physics_case *c)
         if (!(between_value_ >= (low) && between_value_ <= (high)))                                                      \
             fail_msg("%s is %.15g, not between %.15g and %.15g", #value, between_value_, (double)(low), (double)(high)); \
     } while (0)
+
+/* ---- bounds in mixed precision ---- */
+
+/* What one operation of the pair arithmetic loses of its result: half the last place of a float. */
+#define FLOAT_ROUNDING 0x1p-24
+/* Operations one after another from overlap, slip or temperatures, given exactly, to a force, a moment or a flow, and on to the increment of
+ * a velocity or a temperature: no law takes more. Increments are added up without loss, so what has taken increments of one sign is known as
+ * well as one of them. Where a difference is taken on the way, the number of roundings grows by the ratio of its terms to itself. */
+#define LAW 16.0
+
+/* A bound that holds in double, or `roundings` of a float, where the scene runs in mixed precision and they are more. */
+static inline double within(double in_double, double roundings)
+{
+    return case_mixed() ? fmax(in_double, roundings * FLOAT_ROUNDING) : in_double;
+}
+
+/* A number that is kept as two floats knows 2^-48 of its size; so many additions lose as often that. Places are counted from a bed's length
+ * below the bed: `size` is twice that length. */
+static inline double kept(double in_double, double size, double additions)
+{
+    return case_mixed() ? fmax(in_double, additions * size * 0x1p-48) : in_double;
+}
+
+/* Of a body that keeps its shape as it turns by `angle` in so many steps: roundings of either sign, a step's each, of momenta that turn as
+ * much. */
+static inline double turning_error(double in_double, double angle, double steps)
+{
+    return within(in_double, LAW * angle / sqrt(steps));
+}
 
 static inline double sphere_mass(double density, double radius)
 {

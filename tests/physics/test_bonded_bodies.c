@@ -60,7 +60,8 @@ static void test_cantilever(void **state)
     case_run(&c, 1, 2e-6 / finer);
     assert_int_equal(alive(&c), LINKS);
     case_run(&c, 20000 * finer, 2e-6 / finer);
-    RELATIVE(-case_get(&c, "position", LINKS, 2), expected, 2e-4);
+    /* the beam creeps to its place; in mixed precision a joint's turn is one float, which rounds half a last place in every step */
+    RELATIVE(-case_get(&c, "position", LINKS, 2), expected, within(2e-4, 0.5 * 20000 * finer));
     case_close(&c);
 }
 
@@ -278,8 +279,8 @@ static void test_tumbling(void **state)
         case_run(&c, 10000, 1e-6);
         particle_sums now = case_sums(&c);
         for (int k = 0; k < 3; k++) {
-            NEAR(now.momentum[k], before.momentum[k], 1e-13 * linear);
-            NEAR(now.angular[k], before.angular[k], 1e-12 * angular);
+            NEAR(now.momentum[k], before.momentum[k], turning_error(1e-13, 86.0, 1e5) * linear);
+            NEAR(now.angular[k], before.angular[k], turning_error(1e-12, 86.0, 1e5) * angular);
         }
     }
     assert_int_equal(alive(&c), 54);

@@ -12,6 +12,8 @@ static void test_two_grains(void **state)
     (void)state;
     double r = 1e-3, d = 1e-5, after[2];
     double m = sphere_mass(3000, r), h = 60.0 * PI * (r * r - pow(r - 0.5 * d, 2)) / (2.0 * r - d), tau = m * 100.0 / (2.0 * h);
+    /* through the exponent: a law's roundings of 50 K, and those of the two temperatures of which it takes the difference */
+    double error = within(1e-9, 1.0 / tau * (LAW * 50.0 + 2.0 * 400.0));
     RELATIVE(tau, 0.66499582, 1e-8);
     for (int half = 0; half < 2; half++) {
         const hot_grain grains[] = {{"a", r, 0, 400}, {"a", r, 2.0 * r - d, 300}};
@@ -20,13 +22,13 @@ static void test_two_grains(void **state)
         double before = case_heat(&c).content;
         case_run(&c, steps, 1.0 / steps);
         after[half] = temperature_of(&c, 0);
-        NEAR(after[half], 350.0 + 50.0 * pow(1.0 - 1.0 / (tau * steps), steps), 1e-9);
+        NEAR(after[half], 350.0 + 50.0 * pow(1.0 - 1.0 / (tau * steps), steps), error);
         NEAR(after[half] + temperature_of(&c, 1), 700.0, 1e-10);
         RELATIVE(case_heat(&c).content, before, 1e-13);
         case_close(&c);
     }
-    NEAR(2.0 * after[1] - after[0], 361.1145400, 2e-5); /* first order */
-    NEAR(2.0 * after[1] - after[0], 350.0 + 50.0 * exp(-1.0 / tau), 2e-5);
+    NEAR(2.0 * after[1] - after[0], 361.1145400, 2e-5 + 3.0 * error); /* first order */
+    NEAR(2.0 * after[1] - after[0], 350.0 + 50.0 * exp(-1.0 / tau), 2e-5 + 3.0 * error);
 }
 
 /* Conductance by Eqs. 33-35; the same bits whichever grain comes first. */
@@ -38,8 +40,8 @@ static void test_unequal_grains(void **state)
     physics_case c = row_open(OVERLAP_AREA, TWO, "", ab, 2), swapped = row_open(OVERLAP_AREA, TWO, "", ba, 2);
     double h = overlap_conductance(1e-3, 2e-3, 1e-5, 60, 20), flow = flow_of(&c, 0, 1);
     RELATIVE(h, 3.5933834e-4, 1e-7);
-    RELATIVE(flow, -100.0 * h, 1e-10);
-    RELATIVE(flow_of(&swapped, 0, 1), -flow, 1e-12); /* positions differ in their last bits */
+    RELATIVE(flow, -100.0 * h, within(1e-10, LAW));
+    RELATIVE(flow_of(&swapped, 0, 1), -flow, within(1e-12, LAW)); /* positions differ in their last bits */
     case_close(&c);
     case_close(&swapped);
 }
@@ -56,7 +58,7 @@ static void test_film(void **state)
     physics_case c = row_open(OVERLAP_AREA, materials, "", grains, 3);
     double area = PI * (r * r - pow(r - 0.5 * d, 2));
     double k = 2.0 * r / (2.0 * r / 60.0 + 2.0 * 1e-6 / 0.05);
-    RELATIVE(flow_of(&c, 0, 1), -100.0 * k * area / (2.0 * r - d), 1e-10);
+    RELATIVE(flow_of(&c, 0, 1), -100.0 * k * area / (2.0 * r - d), within(1e-10, LAW));
     assert_true(isnan(flow_of(&c, 1, 2)) || fabs(flow_of(&c, 1, 2)) < 1e-25);
     case_close(&c);
 }
@@ -89,12 +91,14 @@ static void test_column(void **state)
     RELATIVE(flow, 0.30063276433, 1e-9);
     RELATIVE(flow / ((2.0 * r - d) * (2.0 * r - d)) * (COLUMN + 1) * (2.0 * r - d) / 700.0, h / (2.0 * r - d), 1e-12);
     case_run(&c, 2000, 0.4 * capacity / h);
-    RELATIVE(flow_of(&c, 0, -1), flow, 1e-9); /* from the hot wall */
+    /* grains of up to 1000 K are apart by an eleventh of 700 K; ten contacts in a row */
+    double apart = 700.0 / (COLUMN + 1), error = within(1e-9, LAW + 2.0 * 1000.0 / apart);
+    RELATIVE(flow_of(&c, 0, -1), flow, error); /* from the hot wall */
     for (int k = 0; k + 1 < COLUMN; k++)
-        RELATIVE(flow_of(&c, k, k + 1), -flow, 1e-9);
-    RELATIVE(flow_of(&c, COLUMN - 1, -2), -flow, 1e-9);
+        RELATIVE(flow_of(&c, k, k + 1), -flow, error);
+    RELATIVE(flow_of(&c, COLUMN - 1, -2), -flow, error);
     for (int k = 0; k < COLUMN; k++)
-        NEAR(temperature_of(&c, k), 1000.0 - 700.0 * (k + 1) / (COLUMN + 1), 1e-6);
+        NEAR(temperature_of(&c, k), 1000.0 - 700.0 * (k + 1) / (COLUMN + 1), fmax(1e-6, COLUMN * apart * within(0.0, LAW + 2.0 * 1000.0 / apart)));
     case_close(&c);
 }
 
@@ -104,8 +108,8 @@ static void test_walls(void **state)
     (void)state;
     double r = 3e-3, d = 1.5e-5, area = PI * (r * r - (r - d) * (r - d));
     physics_case mirror = column_open(OVERLAP_AREA, d), plane = column_open("  - {slot: conduction, law: overlap_area, wall: plane}", d);
-    RELATIVE(flow_of(&mirror, 0, -1), 700.0 * 100.0 * area / (2.0 * (r - d)), 1e-9);
-    RELATIVE(flow_of(&plane, 0, -1), 700.0 * 100.0 * area / (r - d), 1e-9);
+    RELATIVE(flow_of(&mirror, 0, -1), 700.0 * 100.0 * area / (2.0 * (r - d)), within(1e-9, LAW));
+    RELATIVE(flow_of(&plane, 0, -1), 700.0 * 100.0 * area / (r - d), within(1e-9, LAW));
     case_close(&mirror);
     case_close(&plane);
 }
@@ -116,12 +120,12 @@ static void test_batchelor_obrien(void **state)
     const hot_grain grains[] = {{"a", 1e-3, 0, 400}, {"b", 2e-3, 3e-3 - 1e-5, 300}};
     physics_case c = row_open("  - {slot: conduction, law: batchelor_obrien}", TWO, "", grains, 2);
     double k = 2.0 / (1.0 / 60.0 + 1.0 / 20.0), a = sqrt(1e-5 * 1e-3 * 2e-3 / 3e-3);
-    RELATIVE(flow_of(&c, 0, 1), -100.0 * 2.0 * a * k, 1e-9);
+    RELATIVE(flow_of(&c, 0, 1), -100.0 * 2.0 * a * k, within(1e-9, LAW));
     case_close(&c);
     c = column_open("  - {slot: conduction, law: batchelor_obrien}", 1.5e-5);
-    RELATIVE(flow_of(&c, 0, -1), 700.0 * 4.0 * sqrt(1.5e-5 * 3e-3) * 100.0, 1e-9);
+    RELATIVE(flow_of(&c, 0, -1), 700.0 * 4.0 * sqrt(1.5e-5 * 3e-3) * 100.0, within(1e-9, LAW));
     /* a ghost grain beyond the wall, at 2 T_w - T and half the radius: the same */
-    RELATIVE(flow_of(&c, 0, -1), 1400.0 * 2.0 * sqrt(2.0 * 1.5e-5 * 1.5e-3) * 100.0, 1e-9);
+    RELATIVE(flow_of(&c, 0, -1), 1400.0 * 2.0 * sqrt(2.0 * 1.5e-5 * 1.5e-3) * 100.0, within(1e-9, LAW));
     case_close(&c);
 }
 
@@ -141,7 +145,7 @@ static void test_pipe_network(void **state)
         snprintf(effects, sizeof effects, "  - {slot: conduction, law: pipe_network%s}", given ? ", depth_m: 0.01" : "");
         physics_case c = row_open(effects, TWO, "dimensions: 2\n", grains, 2);
         double i = pipe(60, 1e-3, a, given ? 0.01 : 2e-3), j = pipe(20, 2e-3, a, given ? 0.01 : 4e-3);
-        RELATIVE(flow_of(&c, 0, 1), -100.0 / (1.0 / i + 1.0 / j), 1e-9);
+        RELATIVE(flow_of(&c, 0, 1), -100.0 / (1.0 / i + 1.0 / j), within(1e-9, LAW));
         case_close(&c);
     }
 }
@@ -172,10 +176,10 @@ static void test_soft_at_rest(void **state)
                                   "interactions: [{between: default, restitution: 1}]\n", grains, 2);
         flow[soft] = flow_of(&c, 0, 1);
         if (!soft)
-            RELATIVE(flow[0], -100.0 * overlap_conductance(r, r, d, 60, 60), 1e-8);
+            RELATIVE(flow[0], -100.0 * overlap_conductance(r, r, d, 60, 60), within(1e-8, LAW));
         case_close(&c);
     }
-    RELATIVE(flow[1], flow[0], 1e-8);
+    RELATIVE(flow[1], flow[0], within(1e-8, 2.0 * LAW));
 }
 
 /* Two grains collide; what one gives the other does not depend on the modulus of the simulation. */
@@ -219,7 +223,7 @@ static void test_cluster(void **state)
         case_run(&c, 10, 0.99 * limit.limit_s);
         heat_sums now = case_heat(&c);
         assert_true(now.lowest >= before.lowest && now.highest <= before.highest);
-        RELATIVE(now.content, before.content, 1e-12);
+        RELATIVE(now.content, before.content, within(1e-12, LAW)); /* a grain adds up its flows; they pass on about what there is */
     }
     assert_true(case_heat(&c).highest < before.highest - 10.0);
     case_close(&c);
@@ -233,11 +237,11 @@ static void test_tiny_beside_large(void **state)
     physics_case c = row_open(OVERLAP_AREA, ONE, "", grains, 2);
     step_limit limit = case_limit(&c);
     RELATIVE(limit.limit_s, sphere_mass(3000, 1e-5) * 100.0 / overlap_conductance(1e-5, 1e-3, 1e-6, 100, 100), 1e-6);
-    double before = 3000.0;
+    double before = 3000.0, last_place = within(0.0, 2.0) * 300.0;
     for (int k = 0; k < 20; k++) {
         case_run(&c, 1, limit.recommended_s);
         double now = temperature_of(&c, 0);
-        assert_true(now < before && now > temperature_of(&c, 1));
+        assert_true(now < before + last_place && now > temperature_of(&c, 1) - last_place);
         before = now;
     }
     case_close(&c);

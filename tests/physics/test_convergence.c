@@ -49,7 +49,7 @@ static double order(double ratio, double share, int steps)
 static void test_free_flight(void **state)
 {
     (void)state;
-    double g = 9.81, time = 0.1, z[2];
+    double g = 9.81, time = 0.1, error = within(0.0, 0.5 * LAW) * 0.5 * g * time * time, z[2]; /* of gravity's share */
     for (int k = 0; k < 2; k++) {
         int steps = 100 << k;
         text t = {0};
@@ -58,16 +58,17 @@ static void test_free_flight(void **state)
         put_grain(&t, radius, (double[]){0, 0, 0}, (double[]){0.5, 0, 1}, (double[]){0, 0, 0});
         physics_case c = case_open(&t);
         case_run(&c, steps, time / steps);
+        time = steps * c.sim->dt; /* the step may have been rounded */
         z[k] = case_get(&c, "position", 0, 2);
         /* x_n = v0 t - g dt^2 n (n + 1)/2 */
-        NEAR(z[k], time - 0.5 * g * time * time * (1.0 + (case_verlet() ? 0.0 : 1.0 / steps)), 1e-14);
-        NEAR(case_get(&c, "velocity", 0, 2), 1.0 - g * time, 1e-13);
-        NEAR(case_get(&c, "position", 0, 0), 0.5 * time, 1e-14);
+        NEAR(z[k], time - 0.5 * g * time * time * (1.0 + (case_verlet() ? 0.0 : 1.0 / steps)), fmax(1e-14, error));
+        NEAR(case_get(&c, "velocity", 0, 2), 1.0 - g * time, within(1e-13, 0.5 * LAW) * g * time);
+        NEAR(case_get(&c, "position", 0, 0), 0.5 * time, kept(1e-14, 0.1, steps));
         case_close(&c);
     }
     double exact = time - 0.5 * g * time * time;
     if (!case_verlet())
-        NEAR(log2((z[0] - exact) / (z[1] - exact)), 1.0, 1e-6);
+        NEAR(log2((z[0] - exact) / (z[1] - exact)), 1.0, 1e-6 + 2.0 * error / fabs(z[1] - exact));
 }
 
 /* Under velocity Verlet a parabola is exact, whatever the steps and where they change; under gravity that a stage changes too. */
@@ -87,21 +88,27 @@ static void test_parabola(void **state)
     case_run(&c, 1, 1.7 * dt);
     case_run(&c, 64, 0.1 * dt);
     case_run(&c, 7, 3.0 * dt);
-    double time = 30 * dt + 1.7 * dt + 6.4 * dt + 21 * dt, v = 1.0 - g * time, z = time - 0.5 * g * time * time;
-    NEAR(case_get(&c, "position", 0, 2), z, 1e-15);
-    NEAR(case_get(&c, "velocity", 0, 2), v, 2e-15);
+    double time = c.sim->time, v = 1.0 - g * time, z = time - 0.5 * g * time * time, rounds = within(0.0, LAW) * g * time;
+    RELATIVE(time, 30 * dt + 1.7 * dt + 6.4 * dt + 21 * dt, within(1e-15, 1.0));
+    NEAR(case_get(&c, "position", 0, 2), z, 1e-15 + rounds * time);
+    NEAR(case_get(&c, "velocity", 0, 2), v, 2e-15 + rounds);
     case_stage(&c, 1);
     case_run(&c, 50, 2.0 * dt);
-    NEAR(case_get(&c, "position", 0, 2), z + v * 0.1 + 0.01, 1e-15);
-    NEAR(case_get(&c, "velocity", 0, 2), v + 0.2, 2e-15);
+    double more = c.sim->time - time;
+    NEAR(case_get(&c, "position", 0, 2), z + v * more + more * more, 1e-15 + 2.0 * rounds * c.sim->time);
+    NEAR(case_get(&c, "velocity", 0, 2), v + 2.0 * more, 2e-15 + 2.0 * rounds);
     case_close(&c);
 }
 
 static void test_elastic(void **state)
 {
     (void)state;
-    BETWEEN(order(0.0, 0.6, 200), 1.9, 2.1);
-    BETWEEN(order(0.0, 0.9, 400), 1.9, 2.1);
+    /* Of the overlap, 1e-6 of which is the difference of the finer two runs, a float knows 1e-7: steps four times as long make that 16 times as
+     * large, and leave more of the higher orders (a contact that sets in goes as d^1.5), in double too. */
+    int longer = case_mixed() ? 4 : 1;
+    double high = case_mixed() ? 2.2 : 2.1;
+    BETWEEN(order(0.0, 0.6, 200 / longer), 1.9, high);
+    BETWEEN(order(0.0, 0.9, 400 / longer), 1.9, 2.1);
 }
 
 static void test_damped(void **state)

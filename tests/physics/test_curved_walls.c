@@ -53,7 +53,7 @@ static void check_forces(const char *walls, const placed *rows, int count, int c
         double length = sqrt(pow(rows[k].toward[0], 2) + pow(rows[k].toward[1], 2) + pow(rows[k].toward[2], 2));
         double expected = hertz(radius - rows[k].distance);
         for (int a = 0; a < 3; a++)
-            NEAR(force[3 * k + a], expected * rows[k].toward[a] / length, 1e-9 * hertz(0.1 * radius));
+            NEAR(force[3 * k + a], expected * rows[k].toward[a] / length, within(1e-9, LAW) * hertz(0.1 * radius));
     }
     live_contact *live = case_contacts(&c, &found);
     assert_int_equal(found, contacts);
@@ -126,7 +126,7 @@ static void test_drum_corner(void **state)
     const double expected[4][3] = {{-n * c, n, -n * s}, {n * c, -n, -n * s}, {h * s, -h, h * c}, {0, n, 0}};
     for (int k = 0; k < 4; k++)
         for (int a = 0; a < 3; a++)
-            NEAR(f[3 * k + a], expected[k][a], 1e-9 * n);
+            NEAR(f[3 * k + a], expected[k][a], within(1e-9, LAW) * n);
     live_contact *live = case_contacts(&p, &count);
     assert_int_equal(count, 6);
     free(live);
@@ -276,7 +276,7 @@ static void test_orbit_in_cone(void **state)
     put_grain(&t, radius, (double[]){rho, 0, z}, (double[]){0, v, 0}, none);
     physics_case c = case_open(&t);
     double *f = case_totals(&c, false);
-    RELATIVE(f[2], m * gravity, 1e-6);
+    RELATIVE(f[2], m * gravity, within(1e-6, LAW));
     RELATIVE(f[0], -m * v * v / rho, 1e-6);
     free(f);
     double turn = 2.0 * PI * rho / v;
@@ -356,8 +356,8 @@ static void test_rests_on_level_line(void **state)
     put_grain(&t, radius, (double[]){0.05, 0, -0.01 * cos(tilt) + radius - overlap}, none, none);
     physics_case c = case_open(&t);
     double *f = case_totals(&c, false);
-    RELATIVE(f[2], m * gravity, 1e-6);
-    NEAR(f[0], 0.0, 1e-9 * m * gravity);
+    RELATIVE(f[2], m * gravity, within(1e-6, LAW));
+    NEAR(f[0], 0.0, within(1e-9, LAW) * m * gravity);
     free(f);
     case_run(&c, 5000, 1.0e-5);
     NEAR(case_get(&c, "position", 0, 0), 0.05, 1e-9);

@@ -36,13 +36,13 @@ static void test_shares(void **state)
         assert_true(lost[6 + k] > 0.0);
     }
     /* a rise of 1e-3 K on 300 K is known to 1e-10 */
-    RELATIVE(mass(radius) * capacity * (temperature[0] - 300.0), 0.5 * share * pair, 1e-8);
-    RELATIVE(mass(2 * radius) * capacity * (temperature[1] - 300.0), 0.5 * share * pair, 1e-8);
-    RELATIVE(mass(radius) * capacity * (temperature[2] - 300.0), share * wall, 1e-8);
+    RELATIVE(mass(radius) * capacity * (temperature[0] - 300.0), 0.5 * share * pair, within(1e-8, LAW));
+    RELATIVE(mass(2 * radius) * capacity * (temperature[1] - 300.0), 0.5 * share * pair, within(1e-8, LAW));
+    RELATIVE(mass(radius) * capacity * (temperature[2] - 300.0), share * wall, within(1e-8, LAW));
     heat_sums heat;
     MUST(heat_observe(c.sim, &heat, why));
     MUST(ledger_read(c.sim, sums, why));
-    RELATIVE(heat.tally[CLAST_TALLY_DISSIPATION], share * (sums[0] + sums[1] + sums[2]), 1e-12);
+    RELATIVE(heat.tally[CLAST_TALLY_DISSIPATION], share * (sums[0] + sums[1] + sums[2]), within(1e-12, LAW));
     free(temperature);
     free(lost);
     case_close(&c);

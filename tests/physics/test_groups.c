@@ -41,7 +41,8 @@ static void test_fixed(void **state)
     case_run(&c, 510, duration(v) / 1000);
     RELATIVE(case_get(&c, "velocity", 1, 0), -v, 2e-6);
     double *x = case_field(&c, "position"), *u = case_field(&c, "velocity");
-    assert_true(x[0] == radius && x[1] == 0.0 && x[2] == 0.0 && u[0] == 0.0 && u[1] == 0.0 && u[2] == 0.0);
+    NEAR(x[0], radius, kept(0.0, 8.0 * radius, 1.0));
+    assert_true(x[1] == 0.0 && x[2] == 0.0 && u[0] == 0.0 && u[1] == 0.0 && u[2] == 0.0);
     free(x);
     free(u);
     case_close(&c);
@@ -71,8 +72,8 @@ static void test_prescribed_hits(void **state)
     physics_case c = case_open(&t);
     case_run(&c, 1010, duration(u) / 1000);
     RELATIVE(case_get(&c, "velocity", 1, 0), 2.0 * u, 2e-6);
-    NEAR(case_get(&c, "position", 0, 0), -radius + u * c.sim->time, 1e-15);
-    assert_true(case_get(&c, "velocity", 0, 0) == u);
+    NEAR(case_get(&c, "position", 0, 0), -radius + u * c.sim->time, kept(1e-15, 8.0 * radius, 1010));
+    NEAR(case_get(&c, "velocity", 0, 0), u, within(0.0, 1.0) * u);
     case_close(&c);
 }
 
@@ -94,18 +95,18 @@ static void test_paths(void **state)
     physics_case c = case_open(&t);
     for (int part = 0; part < 5; part++) {
         case_run(&c, 100, dt);
-        double *x = case_field(&c, "position"), *v = case_field(&c, "velocity"), time = c.sim->time;
-        NEAR(x[0], 0.1 * time, 1e-12);
-        NEAR(x[1], 0.6 * 0.002 * sin(omega * time), 1e-12);
-        NEAR(x[2], 0.8 * 0.002 * sin(omega * time), 1e-12);
-        NEAR(v[2], 0.8 * 0.002 * omega * cos(omega * time), 1e-10);
-        NEAR(x[3], 0.1 + 0.02 * cos(rate * time), 1e-12);
-        NEAR(x[4], 0.02 * sin(rate * time), 1e-12);
-        NEAR(x[5], 0.01 + 0.2 * time, 1e-12);
-        NEAR(v[3], -0.02 * rate * sin(rate * time), 1e-10);
+        double *x = case_field(&c, "position"), *v = case_field(&c, "velocity"), time = c.sim->time, place = kept(1e-12, 0.4, time / dt), speed = within(1e-10, LAW);
+        NEAR(x[0], 0.1 * time, place);
+        NEAR(x[1], 0.6 * 0.002 * sin(omega * time), place);
+        NEAR(x[2], 0.8 * 0.002 * sin(omega * time), place);
+        NEAR(v[2], 0.8 * 0.002 * omega * cos(omega * time), speed);
+        NEAR(x[3], 0.1 + 0.02 * cos(rate * time), place);
+        NEAR(x[4], 0.02 * sin(rate * time), place);
+        NEAR(x[5], 0.01 + 0.2 * time, place);
+        NEAR(v[3], -0.02 * rate * sin(rate * time), speed);
         NEAR(case_get(&c, "spin", 1, 2), rate, 1e-12);
         double since = fmax(0.0, fmin(time, 0.03) - 0.01), after = fmax(0.0, time - 0.03);
-        NEAR(x[7], 0.5 * 0.4 / 0.02 * since * since + 0.4 * after, 1e-12);
+        NEAR(x[7], 0.5 * 0.4 / 0.02 * since * since + 0.4 * after, place);
         free(x);
         free(v);
     }
@@ -145,10 +146,11 @@ static void test_stages(void **state)
     case_run(&c, 100, dt);
     double *v = case_field(&c, "velocity"), *x = case_field(&c, "position");
     NEAR(v[0], 0.5, 1e-15);
-    NEAR(v[2], -10.0 * 0.01, 1e-12);
-    NEAR(x[0], 0.5 * 0.02, 1e-14);
-    double fall = 10.0 * dt * dt * 100.0 * (case_verlet() ? 100.0 : 101.0) / 2.0;
-    NEAR(x[2], -fall, 1e-14);
+    double step = c.sim->dt, rounds = within(0.0, LAW); /* of an increment of the velocity */
+    NEAR(v[2], -1000.0 * step, 1e-12 + 0.1 * rounds);
+    NEAR(x[0], 100.0 * step, kept(1e-14, 0.02, 200));
+    double fall = 10.0 * step * step * 100.0 * (case_verlet() ? 100.0 : 101.0) / 2.0;
+    NEAR(x[2], -fall, 1e-14 + fall * rounds);
     free(v);
     free(x);
     case_stage(&c, 2);
@@ -156,12 +158,12 @@ static void test_stages(void **state)
     v = case_field(&c, "velocity");
     x = case_field(&c, "position");
     assert_true(v[0] == 0.0 && v[2] == 0.0);
-    NEAR(x[2], -fall, 1e-14);
+    NEAR(x[2], -fall, 1e-14 + fall * rounds);
     free(v);
     free(x);
     case_stage(&c, 3);
     case_run(&c, 100, dt);
-    NEAR(case_get(&c, "velocity", 0, 2), -0.1, 1e-12);
+    NEAR(case_get(&c, "velocity", 0, 2), -1000.0 * step, 1e-12 + 0.1 * rounds);
     NEAR(case_get(&c, "velocity", 0, 0), 0.0, 0.0);
     case_close(&c);
 }

@@ -77,7 +77,8 @@ static void test_both(void **state)
 static void test_generation(void **state)
 {
     (void)state;
-    RELATIVE(cooled("  - {slot: heat_generation, law: volumetric}", "", 300, 10.0, 100), 300.0 + 10.0 * 1e6 / (7800.0 * 600.0), 1e-12);
+    double rise = 10.0 * 1e6 / (7800.0 * 600.0);
+    NEAR(cooled("  - {slot: heat_generation, law: volumetric}", "", 300, 10.0, 100), 300.0 + rise, 3e-10 + within(0.0, LAW) * rise);
 }
 
 /* From 3000 K and from 4 K, at the largest step that the limit allows, temperatures go to the environment's and not past it. */
@@ -88,13 +89,13 @@ static void test_bounds(void **state)
     physics_case c = row_open(NEWTON "\n" RADIATION, STEEL, "environment: {temperature_k: 1200}\n", grains, 3);
     step_limit limit = case_limit(&c);
     double m = sphere_mass(3000, 1e-6), rate = 4.0 * PI * 1e-12 * (50.0 + 0.3 * STEFAN * (1200.0 + 3000.0) * (1200.0 * 1200.0 + 3000.0 * 3000.0));
-    RELATIVE(limit.limit_s, m * 100.0 / rate, 1e-9);
-    double before[3] = {3000, 4, 3000};
+    RELATIVE(limit.limit_s, m * 100.0 / rate, within(1e-9, LAW));
+    double before[3] = {3000, 4, 3000}, last = within(0.0, LAW) * 1800.0; /* the first step of all goes all the way */
     for (int k = 0; k < 50; k++) {
         case_run(&c, 1, limit.limit_s);
         for (int i = 0; i < 3; i++) {
             double now = temperature_of(&c, i);
-            assert_true(fabs(now - 1200.0) <= fabs(before[i] - 1200.0) && (now - 1200.0) * (before[i] - 1200.0) >= 0.0);
+            assert_true(fabs(now - 1200.0) <= last || (fabs(now - 1200.0) <= fabs(before[i] - 1200.0) && (now - 1200.0) * (before[i] - 1200.0) >= 0.0));
             before[i] = now;
         }
     }
@@ -120,7 +121,7 @@ static void test_environment(void **state)
     physics_case c = row_open(NEWTON, STEEL, "environment: {temperature_k: {axis: x, at_m: [0, 1, 3], value: [300, 400, 500]}}\n", grains, 4);
     case_run(&c, 1, 1e-3);
     for (int k = 0; k < 4; k++)
-        NEAR(temperature_of(&c, k) - 400.0, 1e-3 / tau * (expected[k] - 400.0), 1e-10);
+        NEAR(temperature_of(&c, k) - 400.0, 1e-3 / tau * (expected[k] - 400.0), 1e-10 + within(0.0, LAW) * 1e-3 / tau * 100.0);
     case_close(&c);
 }
 
@@ -139,10 +140,12 @@ static void test_groups(void **state)
     double mc = sphere_mass(3000, 1e-3) * 100.0;
     NEAR(temperature_of(&c, 0), 300.0, 0.0);
     case_run(&c, 150, 1e-2);
-    NEAR(temperature_of(&c, 0), 450.0, 1e-9);
-    RELATIVE(temperature_of(&c, 1), 300.0 + 0.01 * 1.5 / mc, 1e-12);
+    double time = c.sim->time; /* a step may be rounded */
+    NEAR(time, 1.5, within(1e-12, 2.0));
+    NEAR(temperature_of(&c, 0), 500.0 - 100.0 * (time - 1.0), 1e-9);
+    NEAR(temperature_of(&c, 1), 300.0 + 0.01 * time / mc, 3e-10 + within(0.0, LAW) * 0.01 * time / mc);
     NEAR(temperature_of(&c, 2), 350.0, 0.0);
-    RELATIVE(case_heat(&c).tally[CLAST_TALLY_SOURCES], 0.01 * 1.5 + 150.0 * mc, 1e-10);
+    RELATIVE(case_heat(&c).tally[CLAST_TALLY_SOURCES], 0.01 * time + 100.0 * (3.0 - time) * mc, within(1e-10, LAW));
     case_close(&c);
 }
 
@@ -165,11 +168,11 @@ static void test_wall_flux(void **state)
     }
     physics_case c = case_open(&t);
     for (int k = 0; k < 3; k++)
-        RELATIVE(flow_of(&c, k, -1), 0.5 * depth[k] * (2.0 * radius[k] - depth[k]) / sum, 1e-8);
+        RELATIVE(flow_of(&c, k, -1), 0.5 * depth[k] * (2.0 * radius[k] - depth[k]) / sum, within(1e-8, LAW));
     double before = case_heat(&c).content;
     case_run(&c, 100, 1e-3);
-    RELATIVE(case_heat(&c).content - before, 0.05, 1e-10);
-    RELATIVE(case_heat(&c).tally[CLAST_TALLY_WALLS], 0.05, 1e-10);
+    RELATIVE(case_heat(&c).content - before, 0.05, within(1e-10, LAW));
+    RELATIVE(case_heat(&c).tally[CLAST_TALLY_WALLS], 0.05, within(1e-10, LAW));
     case_close(&c);
 }
 
@@ -212,7 +215,7 @@ static void test_balance(void **state)
         most = fmax(most, fabs(after.tally[q]));
         assert_true(after.tally[q] != 0.0);
     }
-    NEAR(after.content - before.content, in, 1e-9 * most);
+    NEAR(after.content - before.content, in, within(1e-9, LAW) * most);
     assert_true(case_contact_sums(&c).contacts > 20);
     case_close(&c);
 }
@@ -279,11 +282,11 @@ static void test_stages(void **state)
     case_stage(&c, 1);
     double h = overlap_conductance(1e-3, 1e-3, 2e-5, 60, 60), mc = sphere_mass(7800, 1e-3) * 600.0;
     case_run(&c, 10, 1e-4);
-    RELATIVE(500.0 - temperature_of(&c, 0), 200.0 * pow(1.0 - 1e-4 * h / mc, 10), 1e-10);
+    RELATIVE(500.0 - temperature_of(&c, 0), 200.0 * pow(1.0 - 1e-4 * h / mc, 10), within(1e-10, LAW));
     double warm = temperature_of(&c, 0), k = 1e-4 * 50.0 * 4.0 * PI * 1e-6 / mc;
     case_stage(&c, 2);
     case_run(&c, 10, 1e-4);
-    RELATIVE(temperature_of(&c, 0) - 300.0, (warm - 300.0) * pow(1.0 - k, 10), 1e-9);
+    RELATIVE(temperature_of(&c, 0) - 300.0, (warm - 300.0) * pow(1.0 - k, 10), within(1e-9, LAW));
     case_close(&c);
 }
 

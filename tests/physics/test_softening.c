@@ -36,7 +36,7 @@ static void test_closed_form(void **state)
         for (int p = 0; p < PAIRS; p++) {
             double ea = factor(temperatures[p][0], 400, 1, 0) * young, eb = factor(temperatures[p][1], 350, 2.5, 0.1) * young2;
             double modulus = 1.0 / ((1 - nu * nu) / ea + (1 - nu2 * nu2) / eb);
-            RELATIVE(fabs(contacts[p].force[0]), 4.0 / 3.0 * modulus * sqrt(0.5 * radius) * pow(contacts[p].overlap, 1.5), 1e-9);
+            RELATIVE(fabs(contacts[p].force[0]), 4.0 / 3.0 * modulus * sqrt(0.5 * radius) * pow(contacts[p].overlap, 1.5), within(1e-9, LAW + 3.0 * 4.0)); /* exponents up to 4 */
         }
         free(contacts);
         case_run(&c, 1, 1e-12);
@@ -78,7 +78,8 @@ static void test_impacts(void **state)
     impact("", 700.0, 1.0, stiff);
     double apart = 0.0;
     for (int k = 0; k < 36; k++) {
-        NEAR(hot[k], cold[k], 1e-9 * (1.0 + fabs(cold[k])));
+        /* two runs, and speeds of a metre a second, spins of as much over a radius */
+        NEAR(hot[k], cold[k], 1e-9 * (1.0 + fabs(cold[k])) + within(0.0, 2.0 * LAW) * (k < 18 ? 1.0 : 1.0 / radius));
         apart = fmax(apart, fabs(hot[k] - stiff[k]));
     }
     assert_true(apart > 1e-3);
@@ -102,7 +103,7 @@ static double imbalance(double dt)
     case_run(&c, llround(0.2 / dt), dt);
     MUST(ledger_read(c.sim, e, why));
     double soft = factor(case_get(&c, "temperature", 0, 0), 300, 2, 0), elastic = case_contact_sums(&c).elastic;
-    RELATIVE(case_get(&c, "modulus_factor", 0, 0), soft, 1e-12);
+    RELATIVE(case_get(&c, "modulus_factor", 0, 0), soft, within(1e-12, LAW));
     BETWEEN(soft, 0.05, 0.5);
     assert_true(e[4] < -0.1 * elastic);
     double gap = case_sums(&c).kinetic + elastic + e[0] - e[4] - e[6]; /* dissipated_normal, work_stiffness, work_gravity */

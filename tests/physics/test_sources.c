@@ -33,6 +33,13 @@ static double *rises(physics_case *c, int64_t steps, double dt)
     return t;
 }
 
+/* Roundings, in mixed precision, of what passes to a depth that changes it by the factor e over `length`: depths are differences of places,
+ * which stand within four times the size of the bed. */
+static double depth_error(double length, double size)
+{
+    return within(0.0, LAW + 2.0 * 4.0 * size / length);
+}
+
 static heat_sums sums_of(physics_case *c)
 {
     heat_sums sums;
@@ -56,12 +63,13 @@ static void test_laser(void **state)
     double *rise = rises(&c, 10, dt), gained = 0.0;
     for (int64_t i = 0; i < c.sim->id_count; i++) {
         double s = (double)(3 - i / 9) * SPACING; /* layers from the bottom up */
-        NEAR(rise[i], ABSORBS * FRONT * INTENSITY * exp(-mu * s) * 10 * dt / CAPACITY, 1e-11 * 300.0);
+        double expected = ABSORBS * FRONT * INTENSITY * exp(-mu * s) * 10 * dt / CAPACITY;
+        NEAR(rise[i], expected, 1e-11 * 300.0 + depth_error(1.0 / mu, 4.0 * SPACING) * expected);
         gained += rise[i] * CAPACITY;
     }
-    NEAR(rise[35] * CAPACITY / (ABSORBS * 10 * dt), 10.0, 1e-8); /* TM 5.4: W on a grain of the surface */
-    NEAR(sums_of(&c).tally[CLAST_TALLY_ABSORBED], gained, 1e-11 * 300.0 * 36 * CAPACITY);
-    NEAR(c.sim->beams.delivered, POWER * 10 * dt, 1e-12 * POWER);
+    NEAR(rise[35] * CAPACITY / (ABSORBS * 10 * dt), 10.0, 1e-8 + 10.0 * within(0.0, LAW)); /* TM 5.4: W on a grain of the surface */
+    NEAR(sums_of(&c).tally[CLAST_TALLY_ABSORBED], gained, 1e-11 * 300.0 * 36 * CAPACITY + within(0.0, LAW) * gained);
+    NEAR(c.sim->beams.delivered, POWER * 10 * c.sim->dt, 1e-12 * POWER);
     free(rise);
     case_close(&c);
 }
@@ -83,7 +91,8 @@ static void test_burner(void **state)
         double *rise = rises(&c, 1, dt);
         for (int64_t i = 0; i < c.sim->id_count; i++) {
             double s = (double)(3 - i / 9) * SPACING, share = fmax(1.0 - s / reach[n], 0.0);
-            NEAR(rise[i], ABSORBS * FRONT * INTENSITY * share * dt / CAPACITY, 1e-11 * 300.0);
+            double full = ABSORBS * FRONT * INTENSITY * dt / CAPACITY;
+            NEAR(rise[i], full * share, 1e-11 * 300.0 + depth_error(reach[n], 4.0 * SPACING) * full);
         }
         free(rise);
         case_close(&c);
@@ -108,7 +117,7 @@ static void test_gaussian_from_the_side(void **state)
         double x = (double)(i % 3) * SPACING, y = (double)(i / 3 % 3) * SPACING, z = (double)(i / 9) * SPACING;
         double rho2 = pow(y - 1e-3, 2) + pow(z - 2e-3, 2);
         double power = ABSORBS * FRONT * 2.0 * POWER / (PI * w * w) * exp(-2.0 * rho2 / (w * w)) * exp(-mu * x);
-        NEAR(rise[i], power * dt / CAPACITY, 1e-11 * 300.0);
+        NEAR(rise[i], power * dt / CAPACITY, 1e-11 * 300.0 + depth_error(1.0 / mu, 4.0 * SPACING) * power * dt / CAPACITY);
     }
     free(rise);
     case_close(&c);
@@ -128,9 +137,9 @@ static void test_oblique_beam_meets_the_first_grain(void **state)
             "{position_m: [3e-3, 0, -3e-3], radius_m: 5e-4}, {position_m: [3e-3, 0, 3e-3], radius_m: 5e-4}]}]\n");
     physics_case c = case_open(&t);
     double *rise = rises(&c, 1, 1.0), expected = FRONT * 1000.0 / (PI * 0.25) / CAPACITY;
-    NEAR(rise[0], expected, 1e-9);
+    NEAR(rise[0], expected, 1e-9 + within(0.0, LAW) * expected);
     NEAR(rise[1], 0.0, 1e-12); /* behind the first by 3 sqrt(2) mm */
-    NEAR(rise[2], expected, 1e-9);
+    NEAR(rise[2], expected, 1e-9 + within(0.0, LAW) * expected);
     free(rise);
     case_close(&c);
 }
@@ -167,16 +176,17 @@ static void test_moving_beam(void **state)
             "", 5, 1);
     physics_case c = case_open(&t);
     double *rise = rises(&c, 500, dt), delivered = 0.0;
+    double step = c.sim->dt, jump = 0.25 - 0.5 * dt; /* the step may be rounded */
     for (int s = 0; s < 500; s++)
-        delivered += dt * (s * dt < 0.25 - 1e-12 ? 400.0 * s * dt : 20.0);
+        delivered += step * (s * dt < jump ? 400.0 * s * step : 20.0);
     for (int64_t i = 0; i < c.sim->id_count; i++) {
         double x = (double)(i % 5) * SPACING, y = (double)(i / 5) * SPACING, energy = 0.0;
         for (int s = 0; s < 500; s++) {
-            double time = s * dt, centre = -2e-3 + speed * time, power = time < 0.25 - 1e-12 ? 400.0 * time : 20.0;
+            double time = s * step, centre = -2e-3 + speed * time, power = s * dt < jump ? 400.0 * time : 20.0;
             if (pow(x - centre, 2) + y * y <= radius * radius)
-                energy += ABSORBS * FRONT * power / (PI * radius * radius) * dt;
+                energy += ABSORBS * FRONT * power / (PI * radius * radius) * step;
         }
-        NEAR(rise[i], energy / CAPACITY, 1e-10 * 300.0);
+        NEAR(rise[i], energy / CAPACITY, 1e-10 * 300.0 + within(0.0, LAW) * energy / CAPACITY);
     }
     NEAR(c.sim->beams.delivered, delivered, 1e-12 * delivered);
     free(rise);
@@ -199,7 +209,7 @@ static void test_two_sources(void **state)
     for (int64_t i = 0; i < c.sim->id_count; i++) {
         double below = (double)(2 - i / 9) * SPACING, behind = (double)(2 - i % 3) * SPACING;
         double power = ABSORBS * FRONT / area * (100.0 * exp(-2000.0 * below) + 300.0 * fmax(1.0 - behind / 2e-3, 0.0));
-        NEAR(rise[i], power * 1e-3 / CAPACITY, 1e-11 * 300.0);
+        NEAR(rise[i], power * 1e-3 / CAPACITY, 1e-11 * 300.0 + depth_error(5e-4, 3.0 * SPACING) * ABSORBS * FRONT / area * 400.0 * 1e-3 / CAPACITY);
     }
     bool met[2];
     MUST(beams_met(c.sim, met, why));
@@ -255,11 +265,12 @@ static void test_frozen(void **state)
     double *now = case_field(&c, "temperature"), delivered = 0.5 * 10.0 * time, gained = 0.0;
     for (int64_t i = 0; i < c.sim->id_count; i++) {
         double s = (double)(2 - i / 9) * SPACING;
-        NEAR(now[i] - 300.0, ABSORBS * FRONT / (PI * 0.25e-4) * delivered * exp(-mu * s) / CAPACITY, 1e-9 * 300.0);
+        double expected = ABSORBS * FRONT / (PI * 0.25e-4) * delivered * exp(-mu * s) / CAPACITY;
+        NEAR(now[i] - 300.0, expected, 1e-9 * 300.0 + depth_error(1.0 / mu, 3.0 * SPACING) * expected);
         gained += (now[i] - 300.0) * CAPACITY;
     }
     NEAR(c.sim->beams.delivered, delivered, 1e-9 * delivered);
-    NEAR(sums_of(&c).tally[CLAST_TALLY_ABSORBED], gained, 1e-9 * gained);
+    NEAR(sums_of(&c).tally[CLAST_TALLY_ABSORBED], gained, within(1e-9, LAW) * gained);
     free(now);
     case_close(&c);
 }

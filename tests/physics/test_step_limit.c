@@ -35,17 +35,20 @@ static physics_case one_lane(const char *effects, double xi, double vx)
     return lanes_open(effects, 0.0, &only, 1);
 }
 
+/* The largest eigenvalue of a contact with sliding is a double one, which comes from the cosine of a third of an angle near pi: it is known
+ * to the root of a rounding. */
 static void test_closed_form(void **state)
 {
     (void)state;
+    double single = within(1e-8, LAW), twofold = case_mixed() ? sqrt(LAW * FLOAT_ROUNDING) : 1e-8;
     for (int k = 0; k < COUNT_OF(ratios); k++) {
         physics_case c = one_lane(NORMAL, ratios[k], 0.0);
-        RELATIVE(case_limit(&c).live_s, normal_edge(ratios[k]), 1e-8);
+        RELATIVE(case_limit(&c).live_s, normal_edge(ratios[k]), single);
         assert_true(case_limit(&c).limit_s <= case_limit(&c).live_s);
         assert_true(case_limit(&c).recommended_s <= 0.7 * case_limit(&c).limit_s * (1.0 + 1e-12));
         case_close(&c);
         c = one_lane(SLIDING, ratios[k], 0.0);
-        RELATIVE(case_limit(&c).live_s, sliding_edge(ratios[k], 1.0), 1e-8);
+        RELATIVE(case_limit(&c).live_s, sliding_edge(ratios[k], 1.0), twofold);
         assert_true(sliding_edge(ratios[k], 1.0) < normal_edge(ratios[k]));
         case_close(&c);
     }

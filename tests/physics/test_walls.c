@@ -181,7 +181,7 @@ static void check_forces(const char *walls, const placed *rows, int count)
                              rows[k].toward[2] * rows[k].toward[2]);
         double expected = hertz(radius - rows[k].distance);
         for (int a = 0; a < 3; a++)
-            NEAR(force[3 * k + a], expected * rows[k].toward[a] / length, 1e-9 * hertz(0.1 * radius));
+            NEAR(force[3 * k + a], expected * rows[k].toward[a] / length, within(1e-9, LAW) * hertz(0.1 * radius));
     }
     free(force);
     case_close(&c);
@@ -236,7 +236,7 @@ static void test_box(void **state)
     const double sign[5][3] = {{1, 1, 1}, {-1, -1, 1}, {0, 0, 1}, {1, -1, 0}, {0, 0, 0}};
     for (int k = 0; k < 5; k++)
         for (int a = 0; a < 3; a++)
-            NEAR(f[3 * k + a], sign[k][a] * n, 1e-9 * n);
+            NEAR(f[3 * k + a], sign[k][a] * n, within(1e-9, LAW) * n);
     int64_t count;
     live_contact *contacts = case_contacts(&c, &count);
     assert_int_equal(count, 9);
@@ -306,7 +306,7 @@ static void test_force_over_seam(void **state)
         for (int s = 0; s < 60; s++) {
             double f = sqrt(pow(contacts[s].force[0], 2) + pow(contacts[s].force[2], 2));
             if (!ridge)
-                RELATIVE(f, hertz(depth), 1e-9);
+                RELATIVE(f, hertz(depth), within(1e-9, LAW));
             if (s > 0) /* a slope of 0.2, or round the ridge: at most 0.25 of the way in depth */
                 NEAR(f, before, 1.5 * hertz(depth) * 0.25 * apart / depth);
             before = f;
@@ -366,9 +366,9 @@ static void test_reaction(void **state)
         assert_true(now->overlap > 0.0 && now->j == -1 && now->wall == now->i);
         for (int a = 0; a < 3; a++) {
             int b = (a + 1) % 3, d = (a + 2) % 3;
-            NEAR(now->force[a], f[a], 1e-12 * fabs(f[2]));
+            NEAR(now->force[a], f[a], within(1e-12, LAW) * fabs(f[2]));
             /* the grain's torque about the origin and the wall's about its pivot, the origin, cancel: x cross f + m + m_wall = 0 */
-            NEAR(now->torque_wall[a], -(at[b] * f[d] - at[d] * f[b]) - m[a], 1e-12 * fabs(f[2]) * 0.02);
+            NEAR(now->torque_wall[a], -(at[b] * f[d] - at[d] * f[b]) - m[a], within(1e-12, LAW) * fabs(f[2]) * 0.02);
         }
         assert_true(fabs(m[0]) + fabs(m[1]) + fabs(m[2]) > 1e-3 * radius * fabs(f[2]));
     }
@@ -397,10 +397,10 @@ static void test_weight(void **state)
         total += contacts[k].force[2];
     assert_int_equal(count, 9);
     assert_int_equal(case_contact_sums(&c).contacts, 9);
-    RELATIVE(total, weight, 1e-9);
+    RELATIVE(total, weight, within(1e-9, LAW));
     /* and the springs hold 8/15 E* sqrt(r) d^(5/2) each */
     RELATIVE(case_contact_sums(&c).elastic,
-             9.0 * 8.0 / 15.0 * modulus() * sqrt(radius) * pow(hertz_rest(modulus(), radius, weight / 9.0), 2.5), 1e-8);
+             9.0 * 8.0 / 15.0 * modulus() * sqrt(radius) * pow(hertz_rest(modulus(), radius, weight / 9.0), 2.5), within(1e-8, LAW));
     free(contacts);
     case_close(&c);
 }

@@ -1,6 +1,7 @@
 /* A bed on the device from a few lines of YAML, or with grains put there by the test: what the tests of the simulation share. */
 #ifndef CLAST_TESTS_SIMULATION_CASE_H
 #define CLAST_TESTS_SIMULATION_CASE_H
+#include "settings.h"
 #include "simulation.h"
 #include "tuning.h"
 
@@ -88,8 +89,9 @@ static inline void case_measure(bed *b)
 /* The scene's own grains, ready for the first step of stage 0. */
 static inline void case_open(sim_case *c, const char *yaml)
 {
-    char *set = getenv("CLAST_TEST_SET"); /* a setting that every scene is given */
-    MUST(scene_read_text(yaml, "case.yaml", set ? 1 : 0, &set, &c->scene, why));
+    settings set;
+    settings_read(&set);
+    MUST(scene_read_text(yaml, "case.yaml", set.count, set.at, &c->scene, why));
     MUST(bed_generate(c->scene, &c->bed, why));
     MUST(simulation_create(c->scene, &c->bed, case_device(), NULL, &c->sim, why));
     MUST(simulation_begin_stage(c->sim, 0, why));
@@ -129,7 +131,9 @@ static inline double *case_field(simulation *sim, const char *name)
     stored_field *stored = store_find(sim, name);
     assert_non_null(stored);
     int components = stored->field->components;
-    double *rows = case_read(sim, stored->mem, 0, sim->stride * components, sizeof *rows);
+    double *rows = malloc(sizeof *rows * (size_t)(sim->stride * components + 1));
+    assert_non_null(rows);
+    MUST(store_get(sim, stored->mem, stored->field->type, 0, sim->stride * components, rows, why));
     return rows;
 }
 
