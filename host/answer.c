@@ -199,6 +199,19 @@ status answer_read(const char *path, const answer *a, const int64_t *first, answ
     return result;
 }
 
+void answer_merge(answer_series *series, double within_s)
+{
+    int kept = 0;
+    for (int k = 0; k < series->samples; k++) {
+        if (k + 1 < series->samples && series->time[k + 1] - series->time[k] < within_s)
+            continue;
+        series->time[kept] = series->time[k];
+        memmove(&series->value[kept * series->width], &series->value[k * series->width], sizeof *series->value * (size_t)series->width);
+        kept++;
+    }
+    series->samples = kept;
+}
+
 void answer_free(answer_series *series)
 {
     free(series->time);
@@ -206,37 +219,34 @@ void answer_free(answer_series *series)
     *series = (answer_series){0};
 }
 
-static status check_closed_form(reader *r, int index)
+static status check_closed_form(const scene *scene, const closed_form *form, failure *why)
 {
-    const study_spec *study = &r->scene->study;
-    const closed_form *form = &study->closed_form[index];
-    int node = document_at(r->document, "study.closed_form[%d]", index);
+    const study_spec *study = &scene->study;
     answer found;
     failure wrong;
-    if (answer_find(r->scene, form->answer, &found, &wrong) != STATUS_OK)
-        return document_fail(r->document, node, r->why, "%s", wrong.text);
-    if ((found.group >= 0 && found.item < 0) || (found.components > 1 && found.component < 0))
-        return document_fail(r->document, node, r->why, "`%s` is more than one number; name one grain and one component", form->answer);
-    if (form->time_count != form->value_count || form->time_count == 0)
-        return document_fail(r->document, node, r->why, "`time_s` has %d entries and `value` %d; give as many of both, and one at least", form->time_count, form->value_count);
-    for (int k = 0; k < study->answer_count; k++)
-        if (strcmp(study->answers[k], form->answer) == 0)
-            return STATUS_OK;
-    return document_fail(r->document, node, r->why, "`%s` is not among the `answers`; list it there, in the same words", form->answer);
+    bool known = answer_find(scene, form->answer, &found, &wrong) == STATUS_OK; /* else `wrong` says why */
+    if (known && ((found.group >= 0 && found.item < 0) || (found.components > 1 && found.component < 0)))
+        snprintf(wrong.text, sizeof wrong.text, "`%.100s` is more than one number; name one grain and one component", form->answer);
+    else if (known && (form->time_count != form->value_count || form->time_count == 0))
+        snprintf(wrong.text, sizeof wrong.text, "`time_s` has %d entries and `value` %d; give as many of both, and one at least", form->time_count, form->value_count);
+    else if (known) {
+        for (int k = 0; k < study->answer_count; k++)
+            if (strcmp(study->answers[k], form->answer) == 0)
+                return STATUS_OK;
+        snprintf(wrong.text, sizeof wrong.text, "`%.100s` is not among the `answers`; list it there, in the same words", form->answer);
+    }
+    return fail(why, STATUS_BAD_INPUT, "%s:%d:%d: closed form: %.1000s", scene->path, form->at.line, form->at.column, wrong.text);
 }
 
-status scene_check_study(reader *r)
+status answer_check_study(const scene *scene, failure *why)
 {
-    const study_spec *study = &r->scene->study;
+    const study_spec *study = &scene->study;
     answer found;
     failure wrong;
     for (int k = 0; k < study->answer_count; k++)
-        if (answer_find(r->scene, study->answers[k], &found, &wrong) != STATUS_OK)
-            return document_fail(r->document, document_at(r->document, "study.answers[%d]", k), r->why, "%s", wrong.text);
-    for (int k = 0; k < study->set_count; k++)
-        if (!strchr(study->set[k], '='))
-            return document_fail(r->document, document_at(r->document, "study.set[%d]", k), r->why, "`%s`: write PATH=VALUE", study->set[k]);
+        if (answer_find(scene, study->answers[k], &found, &wrong) != STATUS_OK)
+            return fail(why, STATUS_BAD_INPUT, "%s: study.answers[%d]: %.1000s", scene->path, k, wrong.text);
     for (int k = 0; k < study->closed_form_count; k++)
-        TRY(check_closed_form(r, k));
+        TRY(check_closed_form(scene, &study->closed_form[k], why));
     return STATUS_OK;
 }

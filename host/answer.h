@@ -24,9 +24,11 @@ status answer_find(const scene *scene, const char *text, answer *out, failure *w
 int answer_width(const answer *a, const int64_t *first);
 /* Reads it from a results file. */
 status answer_read(const char *path, const answer *a, const int64_t *first, answer_series *out, failure *why);
+/* Drops samples that another follows within so many seconds: the end of a stage that is not quite the time of a frame. */
+void answer_merge(answer_series *series, double within_s);
 void answer_free(answer_series *series);
 
-/* Answers and closed forms of a scene's `study`. */
-status scene_check_study(reader *r);
+/* Answers and closed forms of a scene's `study`. Asked by studies alone: a run does not need them, and a --set may take away what they name. */
+status answer_check_study(const scene *scene, failure *why);
 
 #endif

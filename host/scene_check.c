@@ -1,6 +1,5 @@
 #include "scene_check.h"
 
-#include "answer.h"
 #include "laws/laws.h"
 #include "property.h"
 #include "scene_table.h"
@@ -352,6 +351,5 @@ status scene_check(reader *r)
     TRY(check_needs(r));
     TRY(check_output(r));
     TRY(scene_check_heat(r));
-    TRY(scene_check_study(r));
     return check_planar(r);
 }

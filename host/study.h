@@ -25,6 +25,8 @@ extern const char *const study_choice_names[], *const study_choice_docs[];
 #define STUDY_LEVELS_MAX 14
 #define STUDY_LEVELS_PAST 2 /* steps beyond the finest of the ladder, for the reference */
 #define STUDY_STAGES_MAX 16
+/* Share of the interval between samples within which two times are the same: mixed precision rounds the step to float. */
+#define SAME_SAMPLE 1e-3
 #define STUDY_REPEATS_MAX 100
 
 /* What a curve of the diagram goes along. */

@@ -23,15 +23,21 @@ static status read_scene(study *s, failure *why)
     const run_options *o = &s->options->run;
     scene *first = NULL;
     TRY(scene_read(o->scene_path, o->set_count, o->sets, &first, why));
-    for (int k = 0; k < first->study.set_count; k++)
+    status result = STATUS_OK;
+    for (int k = 0; k < first->study.set_count && result == STATUS_OK; k++) {
         study_add_set(&s->base, &s->base_count, "%s", first->study.set[k]);
+        if (!strchr(first->study.set[k], '='))
+            result = fail(why, STATUS_BAD_INPUT, "%s: study.set[%d]: `%s`: write PATH=VALUE", first->path, k, first->study.set[k]);
+    }
     scene_free(first);
+    TRY(result);
     s->closed_forms_hold = true;
     for (int k = 0; k < o->set_count; k++) {
         study_add_set(&s->base, &s->base_count, "%s", o->sets[k]);
         s->closed_forms_hold = s->closed_forms_hold && changes_nothing(o->sets[k]);
     }
     TRY(scene_read(o->scene_path, s->base_count, s->base, &s->scene, why));
+    TRY(answer_check_study(s->scene, why));
     if (!s->closed_forms_hold && s->scene->study.closed_form_count > 0)
         fprintf(stderr, "the scene's closed forms are left aside: --set has changed what they hold for\n");
     s->seeds = s->scene->study.seeds > 1 ? (int)s->scene->study.seeds : 1;

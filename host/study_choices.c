@@ -259,6 +259,8 @@ static void add_tolerances(study *s, const char *method, const char *integrator,
                 continue;
             if (freeze)
                 study_add_set(&p->set, &p->set_count, "stages[%d].motion=frozen", t);
+            if (freeze)
+                study_add_set(&p->set, &p->set_count, "stages[%d].step_s=auto", t);
             study_add_set(&p->set, &p->set_count, "stages[%d].heat.method=%s", t, method);
             study_add_set(&p->set, &p->set_count, "stages[%d].heat.tolerance=1e-%d", t, decade);
         }

@@ -87,7 +87,7 @@ static status same_samples(const study *s, failure *why)
             first = first ? first : series;
             bool same = series->samples == first->samples;
             for (int k = 0; same && k < series->samples; k++)
-                same = fabs(series->time[k] - first->time[k]) <= 1e-6 * s->interval_s;
+                same = fabs(series->time[k] - first->time[k]) <= SAME_SAMPLE * s->interval_s;
             if (same)
                 continue;
             study_point *p = &s->point[run->point];
@@ -253,7 +253,7 @@ static status error_to_form(const study *s, int a, const closed_form *form, cons
     for (int k = 0; k < form->time_count; k++) {
         int at = -1;
         for (int n = 0; n < series->samples; n++)
-            if (fabs(series->time[n] - form->time_s[k]) <= 1e-6 * (isnan(s->interval_s) ? form->time_s[k] : s->interval_s))
+            if (fabs(series->time[n] - form->time_s[k]) <= SAME_SAMPLE * (isnan(s->interval_s) ? form->time_s[k] : s->interval_s))
                 at = n;
         if (at < 0)
             return fail(why, STATUS_BAD_INPUT, "%s:%d:%d: closed form of `%s`: %g s is no time of a sample; there are %lld, %g s apart (`study.samples`)", s->scene->path, form->at.line,

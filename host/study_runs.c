@@ -173,8 +173,10 @@ static void remove_results(const study_run *r)
 static status read_answers(const study *s, study_run *r, failure *why)
 {
     r->answer = scene_allocate((size_t)s->answer_count, sizeof *r->answer);
-    for (int a = 0; a < s->answer_count; a++)
+    for (int a = 0; a < s->answer_count; a++) {
         TRY(answer_read(r->result, &s->answer[a], s->first, &r->answer[a], why));
+        answer_merge(&r->answer[a], SAME_SAMPLE * s->interval_s);
+    }
     return STATUS_OK;
 }
 
@@ -312,8 +314,25 @@ static bool is_timed_alone(const study *s, const study_point *p)
     return !p->hidden && !p->failed && s->curve[p->curve].each_costs;
 }
 
+/* A method that asks for no tolerance gives the same for all of them: one point of it says everything. */
+static void hide_repetitions(study *s)
+{
+    for (int p = 1; p < s->point_count; p++) {
+        study_point *one = &s->point[p - 1], *two = &s->point[p];
+        if (one->curve != two->curve || s->curve[one->curve].ladder != LADDER_TOLERANCE || one->failed || two->failed || two->hidden)
+            continue;
+        bool same = s->report[one->first_run].steps == s->report[two->first_run].steps;
+        for (int a = 0; same && a < s->answer_count; a++) {
+            const answer_series *x = &s->run[one->first_run].answer[a], *y = &s->run[two->first_run].answer[a];
+            same = memcmp(x->value, y->value, sizeof *x->value * (size_t)(x->samples * x->width)) == 0;
+        }
+        two->hidden = same;
+    }
+}
+
 status study_calibrate(study *s, failure *why)
 {
+    hide_repetitions(s);
     int count = 0, *point = scene_allocate((size_t)(s->curve_count + s->point_count), sizeof *point);
     for (int c = 0; c < s->curve_count; c++)
         if (!s->curve[c].each_costs && s->curve[c].costs_like < 0 && point_to_time(s, c) >= 0)
