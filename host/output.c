@@ -19,7 +19,7 @@ struct output {
     results_observable *observable;
     char (*wall_name)[160];
     double *value;
-    bool wants_sums, wants_contacts, wants_stress, wants_heat;
+    bool wants_sums, wants_contacts, wants_stress, wants_heat, wants_clusters;
     double *mass, *radius;
     int32_t *id, *material, *group;
 };
@@ -55,6 +55,11 @@ static status read_constants(output *o, failure *why)
 
 /* ---- what the scene asks for ---- */
 
+static bool is_cluster(const char *name)
+{
+    return strcmp(name, "cluster") == 0;
+}
+
 static status list_fields(output *o, failure *why)
 {
     const output_spec *spec = &o->sim->scene->output;
@@ -71,7 +76,7 @@ static status list_fields(output *o, failure *why)
     o->field_count = CONSTANT_FIELDS;
     for (int f = 0; f < spec->field_count; f++) {
         const output_name *name = find_name(output_fields, spec->fields[f]);
-        o->field[o->field_count++] = (results_field){name->name, name->unit, name->components, false, false};
+        o->field[o->field_count++] = (results_field){name->name, name->unit, name->components, false, is_cluster(name->name)};
     }
     return STATUS_OK;
 }
@@ -113,6 +118,7 @@ static status list_observables(output *o, failure *why)
         o->observable[o->observable_count++] = (results_observable){name->name, name->unit, name->components};
         o->value_count += name->components;
         o->wants_stress = o->wants_stress || strcmp(name->name, "stress") == 0;
+        o->wants_clusters = o->wants_clusters || strncmp(name->name, "cluster", 7) == 0;
         o->wants_heat = o->wants_heat || is_of_heat(name->name);
         for (size_t c = 0; c < sizeof of_contacts / sizeof *of_contacts; c++)
             o->wants_contacts = o->wants_contacts || strcmp(name->name, of_contacts[c]) == 0;
@@ -180,7 +186,18 @@ static status total_of_contacts(output *o, bool torque, double **out, failure *w
     return STATUS_OK;
 }
 
-static status frame_values(output *o, const void **value, double **owned, failure *why)
+static status field_values(output *o, const char *name, void **out, failure *why)
+{
+    bool force = strcmp(name, "force") == 0, torque = strcmp(name, "torque") == 0;
+    int32_t *ids = NULL;
+    double *reals = NULL;
+    status result = is_cluster(name) ? clusters_find(o->sim, &ids, why)
+                                     : force || torque ? total_of_contacts(o, torque, &reals, why) : observe_field(o->sim, name, &reals, why);
+    *out = ids ? (void *)ids : reals;
+    return result;
+}
+
+static status frame_values(output *o, const void **value, void **owned, failure *why)
 {
     const void *const constant[CONSTANT_FIELDS] = {o->id, o->group, o->material, o->mass, o->radius};
     memcpy(value, constant, sizeof constant);
@@ -188,8 +205,7 @@ static status frame_values(output *o, const void **value, double **owned, failur
         if (o->field[f].constant || f < CONSTANT_FIELDS - 1)
             continue;
         const char *name = o->field[f].name;
-        bool force = strcmp(name, "force") == 0, torque = strcmp(name, "torque") == 0;
-        TRY(force || torque ? total_of_contacts(o, torque, &owned[f], why) : observe_field(o->sim, name, &owned[f], why));
+        TRY(field_values(o, name, &owned[f], why));
         value[f] = owned[f];
     }
     return STATUS_OK;
@@ -232,7 +248,7 @@ static status frame_contacts(output *o, results_contacts *c, void **columns, fai
 status output_frame(output *o, failure *why)
 {
     const void **value = calloc((size_t)o->field_count, sizeof *value);
-    double **owned = calloc((size_t)o->field_count, sizeof *owned);
+    void **owned = calloc((size_t)o->field_count, sizeof *owned);
     void *columns[3] = {NULL, NULL, NULL};
     results_contacts contacts;
     bool with_contacts = o->sim->scene->output.contacts;
@@ -256,6 +272,7 @@ typedef struct measured {
     particle_sums grains;
     contact_sums contacts;
     bond_sums bonds;
+    cluster_sums clusters;
     double stress[9];
     heat_sums heat;
     double ledger[LEDGER_TERMS];
@@ -289,6 +306,9 @@ static int put_observable(const output *o, const char *name, const measured *m, 
                    {"bonds_alive", (double)m->bonds.alive},
                    {"bonds_made", (double)m->bonds.made},
                    {"bonds_broken", (double)m->bonds.broken},
+                   {"clusters", (double)m->clusters.count},
+                   {"cluster_grains", (double)m->clusters.grains},
+                   {"cluster_largest", (double)m->clusters.largest},
                    {"left_count", (double)sim->left_count},
                    {"left_mass", sim->left_mass},
                    {"thermal_energy", m->heat.content},
@@ -316,6 +336,10 @@ static int put_observable(const output *o, const char *name, const measured *m, 
         for (int c = 0; c < 9; c++)
             to[c] = m->stress[c] / bed_volume(sim);
         return 9;
+    }
+    if (strcmp(name, "cluster_sizes") == 0) {
+        memcpy(to, m->clusters.sizes, sizeof m->clusters.sizes);
+        return CLUSTER_CLASSES;
     }
     memcpy(to, strcmp(name, "momentum") == 0 ? m->grains.momentum : m->grains.angular, 3 * sizeof *to);
     return 3;
@@ -371,6 +395,8 @@ status output_observe(output *o, failure *why)
     if (o->wants_contacts)
         TRY(observe_contact_sums(o->sim, &m.contacts, why));
     TRY(bonds_count(o->sim, &m.bonds, why));
+    if (o->wants_clusters)
+        TRY(clusters_measure(o->sim, &m.clusters, why));
     if (o->wants_stress)
         TRY(observe_virial(o->sim, m.stress, why));
     if (o->wants_heat)

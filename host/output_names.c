@@ -11,6 +11,7 @@ const output_name output_fields[] = {
     {"scalar", "1", 1, NULL, "the scalar of the grain that a bond criterion looks at"},
     {"modulus_factor", "1", 1, NULL, "Young's modulus at the temperature of the grain over the one given"},
     {"temperature", "K", 1, NULL, "temperature"},
+    {"cluster", "1", 1, NULL, "smallest id among the grains that bonds join to this one, directly or through others"},
     {0},
 };
 
@@ -52,5 +53,9 @@ const output_name output_observables[] = {
     {"bonds_alive", "1", 1, NULL, "living bonds"},
     {"bonds_made", "1", 1, NULL, "bonds made so far"},
     {"bonds_broken", "1", 1, NULL, "bonds broken so far"},
+    {"clusters", "1", 1, NULL, "clusters of two and more grains that bonds join"},
+    {"cluster_grains", "1", 1, NULL, "grains in them"},
+    {"cluster_largest", "1", 1, NULL, "grains of the largest cluster; 1 where there is no bond"},
+    {"cluster_sizes", "1", 24, NULL, "clusters of 1, 2, 3 to 4, 5 to 8, ... grains: the classes end at powers of 2"},
     {0},
 };

@@ -252,8 +252,9 @@ static status check_output_word(reader *r, const output_name *known, const char 
 static status check_bond_output(reader *r, int node, const char *word)
 {
     const effect *bond = scene_effect(r->scene, -1, SLOT_BOND);
-    if (strncmp(word, "bonds_", 6) == 0 && !bond)
-        return document_fail(r->document, node, r->why, "the observable `%s` needs a bond law; add one, like {slot: bond, law: adhesion}", word);
+    if ((strncmp(word, "bonds_", 6) == 0 || strncmp(word, "cluster", 7) == 0) && !bond)
+        return document_fail(r->document, node, r->why, "the %s `%s` needs a bond law; add one, like {slot: bond, law: adhesion}",
+                             strcmp(word, "cluster") == 0 ? "field" : "observable", word);
     if (strcmp(word, "scalar") != 0 || (bond && (int)bond->option[BOND_CRITERION] == BOND_SCALAR_ABOVE))
         return STATUS_OK;
     return document_fail(r->document, node, r->why,

@@ -383,6 +383,16 @@ bool bonds_are_kept(const simulation *sim);
 /* Records of such bonds into the table that is being built: counted, then written where grains have more than `room` partners. */
 status bonds_keep(simulation *sim, const clast_launch *launch, int room, bool fill, failure *why);
 
+/* clusters.c: grains that bonds join, directly or through others; walls join nobody */
+#define CLUSTER_CLASSES 24
+typedef struct cluster_sums {
+    int64_t count, grains, largest;  /* clusters of two and more, grains in them; grains of the largest (1 where there is no bond) */
+    double sizes[CLUSTER_CLASSES];   /* clusters of 1, 2, 3 to 4, 5 to 8, ... grains */
+} cluster_sums;
+/* By permanent id the smallest id of the grain's cluster; -1 where it has left. Caller frees. */
+status clusters_find(simulation *sim, int32_t **out, failure *why);
+status clusters_measure(simulation *sim, cluster_sums *out, failure *why);
+
 /* ledger.c */
 /* The terms of the ledger so far, LEDGER_TERMS of them in the order of ledger_terms. */
 status ledger_read(simulation *sim, double *out, failure *why);
