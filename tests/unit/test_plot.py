@@ -82,6 +82,36 @@ class TestPlot(unittest.TestCase):
         results(self.file, dimensions=2)
         self.draws("bed", self.file, "--out", self.out)
 
+    def with_contacts(self):
+        """A bond of grains 1 and 2 in the first two frames, a mere contact in the last."""
+        with h5py.File(self.file, "a") as f:
+            contacts = f.create_group("contacts")
+            contacts["offset"] = np.array([0, 1, 2], np.int64)
+            for name, value in (("i", [1, 1, 1]), ("j", [2, 2, 2]), ("wall", [-1, -1, -1]), ("bonded", [1, 1, 0])):
+                contacts[name] = np.array(value, np.int32)
+
+    def test_bonds_and_clusters(self):
+        self.refuses("contacts: true", "bed", self.file, "--out", self.out, "--bonds")
+        self.with_contacts()
+        self.draws("bed", self.file, "--out", self.out, "--bonds", "--field", "cluster")
+        found = plot.Results(self.file)
+        self.assertEqual(found.clusters(0).tolist(), [0, 1, 1])
+        self.assertEqual(found.clusters(2).tolist(), [0, 1, 2])
+        rank, names = plot.ranks(found, [0, 1])
+        self.assertEqual((rank[0].tolist(), names), ([0, 2, 2], ["single", "others", "2 grains"]))
+        found.file.close()
+        self.assertTrue(self.orange_sticks("--bonds"))
+        self.assertFalse(self.orange_sticks())
+        with h5py.File(self.file, "a") as f:  # as stored, where it is
+            series(f["particles/all"], "cluster", np.array([[0, 0, 0]] * 3, np.int32), "1", np.array([0.0, 0.5, 1.0]))
+        self.assertEqual(plot.Results(self.file).clusters(2).tolist(), [0, 0, 0])
+
+    def orange_sticks(self, *arguments):
+        import matplotlib.image
+        self.draws("bed", self.file, "--out", self.out, "--field", "cluster", "--frame", "0", "--view", "z", *arguments)
+        rgb = matplotlib.image.imread(self.out)[:, :-126, :3]
+        return (rgb[..., 0] > rgb[..., 2] + 0.5).sum() > 100
+
     def test_draws_observables(self):
         self.draws("observables", self.file, "--out", self.out)
         self.draws("observables", self.file, "--out", self.out, "--names", "walls/floor/force", "--log")
