@@ -202,9 +202,9 @@ status observe_contact_sums(simulation *sim, contact_sums *out, failure *why)
     result = result == STATUS_OK ? ordered : result;
     for (int64_t n = 0; n < order.count && result == STATUS_OK; n++) {
         int32_t k = order.record[n];
+        out->elastic += energy[k]; /* a bond stores some where the surfaces are apart, too */
         if (ratio[k] > 0.0) {
             out->overlap_max = fmax(out->overlap_max, ratio[k]);
-            out->elastic += energy[k];
             out->contacts++;
             out->pairs += k < sim->table.wall_base;
         }

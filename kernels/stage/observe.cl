@@ -66,11 +66,9 @@ INLINE void observe_record(const clast_launch *launch, int k, bool wall PAIR_DEC
     bond_normal(&c, &s.bond, &out);
     cohesion_force(&c, &s.cohesion, &out);
     real smaller = wall || c.radius_i < c.radius_j ? c.radius_i : c.radius_j;
-    real touching = c.overlap > R(0.0) ? R(1.0) : R(0.0);
+    real springs = normal_energy(&c) + tangential_energy(&c, &s.slip, &s.tangential, out.bearing) + rolling_energy(&c, &s.rolling, out.bearing);
     AT(force, launch->record_stride, 0, k) = c.overlap / smaller;
-    AT(force, launch->record_stride, 1, k) =
-        touching * (normal_energy(&c) + tangential_energy(&c, &s.slip, &s.tangential, out.bearing) + rolling_energy(&c, &s.rolling, out.bearing)) +
-        bond_energy(&c, &s.bond) + cohesion_energy(&c, &s.cohesion);
+    AT(force, launch->record_stride, 1, k) = (c.overlap > R(0.0) ? springs : R(0.0)) + bond_energy(&c, &s.bond) + cohesion_energy(&c, &s.cohesion);
     AT(force, launch->record_stride, 2, k) = c.overlap;
 }
 
