@@ -114,8 +114,13 @@ static status find_links(simulation *sim, failure *why)
     return frozen_run_grains(sim, "heat_frozen_links", 5, why);
 }
 
+bool frozen_follows(const simulation *sim)
+{
+    return sim->live.law[SLOT_CONDUCTION] && (sim->live.law[SLOT_CONDUCTIVITY] || sim->live.law[SLOT_RADIUS]);
+}
+
 /* One evaluation of the pairs gives all that the contacts do while nothing moves. */
-static status link_contacts(simulation *sim, failure *why)
+status frozen_link(simulation *sim, failure *why)
 {
     if (sim->frozen.linked)
         return STATUS_OK;
@@ -213,7 +218,7 @@ static status keep_limit(simulation *sim, failure *why)
 
 status frozen_limit(simulation *sim, double *out, failure *why)
 {
-    TRY(link_contacts(sim, why));
+    TRY(frozen_link(sim, why));
     TRY(find_interval(sim, why));
     if (isnan(sim->frozen.hottest))
         sim->frozen.hottest = frozen_is_heated(sim) ? 1.1 * sim->frozen.high : sim->frozen.high;
@@ -457,6 +462,26 @@ static status stabilised_step(simulation *sim, double until, failure *why)
     }
 }
 
+/* Conductances that follow the temperatures are those of the start of a step; so no temperature may change by more than this share of the range. */
+#define FOLLOWING_SHARE 0.01
+
+static status relink(simulation *sim, double *until, failure *why)
+{
+    frozen_heat *f = &sim->frozen;
+    if (!frozen_follows(sim))
+        return STATUS_OK;
+    f->linked = false;
+    TRY(frozen_link(sim, why));
+    if (frozen_stage(sim)->heat_method == HEAT_STEADY)
+        return STATUS_OK;
+    TRY(find_limit(sim, why));
+    double range = fmax(f->high - f->low, 1e-3 * f->high), most = FOLLOWING_SHARE * range / f->rate;
+    double first = isfinite(f->rate) && f->rate > 0.0 ? most : f->limit;
+    if (isfinite(first) && sim->time + first < *until)
+        *until = sim->time + first;
+    return STATUS_OK;
+}
+
 static status explicit_step(simulation *sim, double until, failure *why)
 {
     scheme c;
@@ -485,12 +510,14 @@ static status take_step(simulation *sim, double until, failure *why)
 
 status frozen_advance(simulation *sim, double until, int64_t most, failure *why)
 {
-    TRY(link_contacts(sim, why));
+    TRY(frozen_link(sim, why));
     TRY(find_interval(sim, why));
     for (int64_t n = 0; n < most && sim->time < until && sim->count > 0; n++) {
         TRY(keep_limit(sim, why));
         bool endless = !isfinite(until) && !isfinite(sim->frozen.limit);
-        TRY(take_step(sim, endless ? sim->time + 1.0 : until, why));
+        double end = endless ? sim->time + 1.0 : until;
+        TRY(relink(sim, &end, why));
+        TRY(take_step(sim, end, why));
     }
     return STATUS_OK;
 }

@@ -9,6 +9,10 @@ typedef struct frozen_findings {
 } frozen_findings;
 
 const scene_stage *frozen_stage(const simulation *sim);
+/* Looks the contact network up, where it is not known. */
+status frozen_link(simulation *sim, failure *why);
+/* Conductances depend on the temperatures: of the grains that conduct, or by their growth. */
+bool frozen_follows(const simulation *sim);
 /* Something other than differences of temperature brings heat. */
 bool frozen_is_heated(const simulation *sim);
 /* Error that a step may make, K. */

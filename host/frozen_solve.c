@@ -1,6 +1,7 @@
 /* Methods that solve for temperatures (docs/theory.md, "Heat while nothing moves"): steps of SDIRK2, and the steady state. Newton's method
  * outside, conjugate gradients on the device inside. */
 #include "frozen_parts.h"
+#include "property.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,6 +11,7 @@
 /* Iterations between looks of the host. */
 #define LOOK_EVERY 8
 #define NEWTON_MAX 60
+#define PICARD_MAX 60
 /* Radiation's slope is a chord in so many iterations, until temperatures are near. */
 #define CHORDS 4
 /* Alexander 1977: both stages with this on the diagonal; stable for any step, and damping. */
@@ -128,7 +130,7 @@ static status correct(simulation *sim, cl_mem rises, failure *why)
 static status newton(simulation *sim, cl_mem rises, cl_mem known, double sigma, int row, bool *converged, failure *why)
 {
     frozen_heat *f = &sim->frozen;
-    bool linear = !sim->live.law[SLOT_RADIATION];
+    bool linear = !sim->live.law[SLOT_RADIATION] && (sigma == 0.0 || !scene_has_material_table(sim->scene, &property_specific_heat));
     double least = (sim->mixed ? 2e-7 : 1e-12) * f->high;
     *converged = false;
     for (int n = 0; n < NEWTON_MAX && !*converged; n++) {
@@ -278,14 +280,23 @@ status frozen_steady_step(simulation *sim, double until, failure *why)
     cl_mem rises = f->rises[0];
     TRY(fit_arrays(sim, why));
     TRY(frozen_write_rows(sim, place, 1, end - sim->time, why));
-    for (int pass = 0; pass < (sim->mixed ? 3 : 1); pass++) {
+    int passes = frozen_follows(sim) ? PICARD_MAX : sim->mixed ? 3 : 1;
+    for (int pass = 0; pass < passes; pass++) {
+        frozen_findings moved;
         TRY(store_fill(sim, rises, f->grain_bytes, why));
         TRY(settle_clusters(sim, rises, why));
         TRY(hold(sim, rises, 0, why));
         TRY(newton(sim, rises, f->zero, 0.0, 0, &converged, why));
         if (sim->live.law[SLOT_HEAT_TALLY])
             TRY(store_fill(sim, f->kept, 6 * f->grain_bytes, why));
+        TRY(frozen_fold(sim, rises, rises, f->zero, &moved, why));
         TRY(frozen_accept(sim, rises, 0, true, why));
+        if (frozen_follows(sim)) { /* Picard: conductances of the temperatures found, until those stand */
+            if (pass > 0 && moved.error <= (sim->mixed ? 1e-6 : 1e-11) * f->high)
+                break;
+            f->linked = false;
+            TRY(frozen_link(sim, why));
+        }
     }
     if (!converged && !sim->mixed)
         return fail(why, STATUS_ERROR, "%s: stage %s: no steady state was found in %d iterations", sim->scene->path, frozen_stage(sim)->name, NEWTON_MAX);
@@ -332,6 +343,7 @@ static status run_stages(simulation *sim, double step, bool *converged, failure 
     frozen_heat *f = &sim->frozen;
     double sigma = 1.0 / (GAMMA * step);
     cl_kernel known = launch_kernel(sim, "heat_frozen_scale");
+    clast_launch launch = launch_values(sim);
     cl_mem first = f->rises[1], second = f->rises[2];
     TRY(weigh_flows(sim, f->zero, 0, 0.0, true, why));
     TRY(store_fill(sim, first, f->grain_bytes, why));
@@ -340,8 +352,8 @@ static status run_stages(simulation *sim, double step, bool *converged, failure 
     if (!*converged)
         return STATUS_OK;
     TRY(weigh_flows(sim, first, 1, (1.0 - GAMMA) * step, false, why));
-    TRY(launch_set(known, "heat_frozen_scale", why, sim->mixed ? "mmf" : "mmd", first, f->rises[0], (1.0 - GAMMA) / GAMMA));
-    TRY(launch_run(sim, known, "heat_frozen_scale", sim->count, sim->block, why));
+    TRY(launch_set(known, "heat_frozen_scale", why, sim->mixed ? "Lmmf" : "Lmmd", &launch, first, f->rises[0], (1.0 - GAMMA) / GAMMA));
+    TRY(frozen_run_grains(sim, "heat_frozen_scale", 4, why));
     TRY(store_copy(sim, first, second, 0, 0, f->grain_bytes, why));
     TRY(hold(sim, second, 2, why));
     TRY(newton(sim, second, f->rises[0], sigma, 2, converged, why));

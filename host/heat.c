@@ -60,6 +60,31 @@ static void fill_profile(const quantity *q, clast_profile *out)
     }
 }
 
+/* Rows of properties against temperature, as kernels/effect/tables.cl reads them. */
+static status upload_tables(simulation *sim, failure *why)
+{
+    const scene *s = scene_of(sim);
+    int64_t places = CLAST_TABLE_PLACES, count = 3 * places * (s->table_count > 0 ? s->table_count : 1);
+    double *rows = calloc((size_t)count, sizeof *rows);
+    if (!rows)
+        return fail(why, STATUS_ERROR, "out of memory");
+    for (int t = 0; t < s->table_count; t++) {
+        const property_table *table = &s->property_table[t];
+        double *row = rows + 3 * places * t;
+        for (int p = 0; p < places; p++) {
+            bool inside = p < table->count, next = p + 1 < table->count;
+            row[p] = inside ? table->temperature_k[p] : 1e30;
+            row[places + p] = table->value[inside ? p : table->count - 1];
+            row[2 * places + p] = next ? (table->value[p + 1] - table->value[p]) / (table->temperature_k[p + 1] - table->temperature_k[p]) : 0.0;
+        }
+    }
+    status result = store_buffer(sim, &sim->heat.tables, store_item(sim, FIELD_REAL) * (uint64_t)count, "properties by temperature", why);
+    if (result == STATUS_OK)
+        result = store_put(sim, sim->heat.tables, FIELD_REAL, 0, count, rows, why);
+    free(rows);
+    return result;
+}
+
 status heat_create(simulation *sim, failure *why)
 {
     heat_tables *h = &sim->heat;
@@ -67,6 +92,8 @@ status heat_create(simulation *sim, failure *why)
     if (!sim->all.law[SLOT_TEMPERATURE])
         return STATUS_OK;
     TRY(beams_create(sim, why));
+    if (sim->all.law[SLOT_TABLES])
+        TRY(upload_tables(sim, why));
     uint64_t constants = store_item(sim, FIELD_REAL) * (uint64_t)(live_grain_constant_count(&sim->all) * s->material_count);
     TRY(store_buffer(sim, &h->constants, constants, "constants of materials", why));
     if (sim->all.law[SLOT_WALL_HEAT] == &law_wall_flux)
@@ -102,6 +129,7 @@ void heat_free(simulation *sim)
     release_rows(sim);
     beams_free(sim);
     store_release(sim, &sim->heat.constants, 0);
+    store_release(sim, &sim->heat.tables, 0);
     store_release(sim, &sim->heat.profile, 0);
     store_release(sim, &sim->heat.areas, 0);
 }

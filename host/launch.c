@@ -43,16 +43,17 @@ static const stage_list stage_lists[] = {
     {"heat_frozen_correct", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_frozen_hold", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_frozen_sinks", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_frozen_scale", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_frozen_store", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_sums", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_surfaces", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
 };
 
 /* The order in which PAIR_FIELDS and PARTICLE_FIELDS name the slots. */
-static const slot_id pair_slots[] = {SLOT_COMPOSITION, SLOT_MOTION, SLOT_ROTATION, SLOT_BONDING, SLOT_BOND, SLOT_COHESION,
-                                     SLOT_SLIP,        SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_DISSIPATION, SLOT_DISSIPATION_HEAT, SLOT_LEDGER, SLOT_WALLS, SLOT_TEMPERATURE, SLOT_MODULUS, SLOT_SOFTENING, SLOT_EXPANSION, SLOT_CONDUCTION, SLOT_WALL_HEAT,
+static const slot_id pair_slots[] = {SLOT_TABLES, SLOT_COMPOSITION, SLOT_MOTION, SLOT_ROTATION, SLOT_BONDING, SLOT_BOND, SLOT_COHESION,
+                                     SLOT_SLIP,        SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_DISSIPATION, SLOT_DISSIPATION_HEAT, SLOT_LEDGER, SLOT_WALLS, SLOT_TEMPERATURE, SLOT_MODULUS, SLOT_SOFTENING, SLOT_EXPANSION, SLOT_CONDUCTIVITY, SLOT_CONDUCTION, SLOT_WALL_HEAT,
                                      SLOT_INTEGRATOR};
-static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENTATION, SLOT_TEMPERATURE, SLOT_SUBSTANCE, SLOT_RADIUS, SLOT_EXPANSION, SLOT_ENVIRONMENT,
+static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENTATION, SLOT_TEMPERATURE, SLOT_SUBSTANCE, SLOT_TABLES, SLOT_CONDUCTIVITY, SLOT_RADIUS, SLOT_EXPANSION, SLOT_ENVIRONMENT,
                                          SLOT_CONDUCTION, SLOT_SOURCE, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY, SLOT_MODULUS, SLOT_DISSIPATION, SLOT_DISSIPATION_HEAT, SLOT_LEDGER, SLOT_INTEGRATOR};
 
 int launch_argument_names(const live_laws *live, const char *kernel, const char **names, int max)
@@ -100,6 +101,7 @@ static cl_mem named_buffer(simulation *sim, const char *name)
                {"wall_heat", sim->heat.walls},
                {"wall_area", sim->heat.areas},
                {"group_heat", sim->heat.groups},
+               {"property_tables", sim->heat.tables},
                {"beams", sim->beams.device_rows},
                {"beam_meets", sim->beams.meets}};
     for (size_t n = 0; n < sizeof own / sizeof *own; n++)

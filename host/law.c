@@ -9,7 +9,7 @@ const law *const laws[] = {&law_hertz,        &law_linear,        &law_mindlin, 
                            &law_constant_torque, &law_power, &law_adhesion, &law_parallel, &law_sintering, &law_jkr, &law_dmt, &law_sjkr,
                            &law_local_damping, &law_viscous_damping, &law_overlap_area,
                            &law_batchelor_obrien, &law_pipe_network, &law_newton,
-                           &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, &law_laser, &law_burner, &law_exponential_softening, &law_linear_expansion, &law_fraction, NULL};
+                           &law_still_gas,    &law_nusselt,       &law_stefan_boltzmann, &law_volumetric, &law_laser, &law_burner, &law_exponential_softening, &law_modulus_table, &law_linear_expansion, &law_fraction, NULL};
 
 static const struct {
     const char *name;
@@ -20,6 +20,7 @@ static const struct {
     [SLOT_BONDING] = {"bonding", false},         [SLOT_BOND] = {"bond", true},              [SLOT_COHESION] = {"cohesion", true},
     [SLOT_SLIP] = {"slip", false},
     [SLOT_TANGENTIAL] = {"tangential", true},    [SLOT_ROLLING] = {"rolling", true},        [SLOT_MODULUS] = {"modulus", true},          [SLOT_SOFTENING] = {"softening", false},
+    [SLOT_TABLES] = {"tables", false},           [SLOT_CONDUCTIVITY] = {"conductivity", false}, [SLOT_FRICTION] = {"friction", false},
     [SLOT_RADIUS] = {"radius", true},            [SLOT_EXPANSION] = {"expansion", false},
     [SLOT_DISSIPATION] = {"dissipation", false},
     [SLOT_DISSIPATION_HEAT] = {"dissipation_heat", true},
@@ -55,6 +56,12 @@ const law *law_find(slot_id slot, const char *name)
         if ((*l)->slot == slot && strcmp((*l)->name, name) == 0)
             return *l;
     return NULL;
+}
+
+bool property_is_tabled(const property *p)
+{
+    return p == &property_conductivity || p == &property_specific_heat || p == &property_youngs_modulus || p == &property_friction_static ||
+           p == &property_friction_dynamic;
 }
 
 const property *const *material_properties(void)

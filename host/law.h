@@ -7,18 +7,21 @@
 /* In the order in which the stages call them. Slots marked derived are chosen by the scene as a whole, not listed under `effects:`. */
 typedef enum slot_id {
     SLOT_PRECISION,   /* derived: double, or float with what takes small increments kept whole */
+    SLOT_TABLES,      /* derived: properties by temperature */
     SLOT_COMPOSITION, /* derived: one material or several */
     SLOT_PERIODIC,    /* derived: nearest image */
     SLOT_MOTION,      /* derived: all free, or groups with prescribed motion */
     SLOT_ROTATION,    /* derived: spin, where a law or an output asks for it */
     SLOT_TEMPERATURE, /* derived: temperature and its step, where a thermal law or an output asks for them */
     SLOT_SUBSTANCE,   /* derived: constants of the grains' materials, where several have a temperature */
+    SLOT_CONDUCTIVITY, /* derived: conductivities that depend on temperature */
     SLOT_RADIUS,  /* radii that depend on temperature */
     SLOT_MODULUS, /* moduli that depend on temperature */
     SLOT_NORMAL,
     SLOT_BONDING, /* derived: what lets a contact bond */
     SLOT_BOND,
     SLOT_COHESION,
+    SLOT_FRICTION, /* derived: friction coefficients that depend on temperature */
     SLOT_SLIP, /* derived: one friction coefficient, or static and dynamic with the sliding flag */
     SLOT_TANGENTIAL,
     SLOT_ROLLING,
@@ -139,6 +142,8 @@ slot_id slot_find(const char *name);
 /* True when a scene may list the slot under `effects:`. */
 bool slot_is_listed(slot_id slot);
 
+/* May be a table against temperature. */
+bool property_is_tabled(const property *property);
 /* Every property that some law may read, each once; material or interaction scope. Null-terminated, owned by the library. */
 const property *const *material_properties(void);
 const property *const *interaction_properties(void);

@@ -80,12 +80,28 @@ static bool law_turns(const law *l)
     return l && l->turns;
 }
 
-static const law *temperature_law(const live_laws *live)
+static const law *temperature_law(const scene *scene, const live_laws *live)
 {
+    bool tabled = scene_has_material_table(scene, &property_specific_heat);
     for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
         if (live->law[slot] && live->law[slot]->reads_temperature)
-            return &law_temperature_pairs;
-    return &law_temperature_grains;
+            return tabled ? &law_temperature_pairs_tabled : &law_temperature_pairs;
+    return tabled ? &law_temperature_grains_tabled : &law_temperature_grains;
+}
+
+/* Properties that depend on temperature, where a live law reads them. */
+static void derive_tables(const scene *scene, live_laws *out)
+{
+    bool friction = scene_has_interaction_table(scene, &property_friction_static) || scene_has_interaction_table(scene, &property_friction_dynamic);
+    if (out->law[SLOT_TANGENTIAL] && friction)
+        out->law[SLOT_FRICTION] = &law_friction_tabled;
+    if (out->law[SLOT_CONDUCTION] && scene_has_material_table(scene, &property_conductivity))
+        out->law[SLOT_CONDUCTIVITY] = &law_conductivity_tabled;
+    bool grains = out->law[SLOT_CONDUCTIVITY] || out->law[SLOT_MODULUS] == &law_modulus_table || scene_has_material_table(scene, &property_specific_heat);
+    if (out->law[SLOT_FRICTION])
+        out->law[SLOT_TABLES] = grains ? &law_tables_of_both : &law_tables_of_pairs;
+    else if (grains)
+        out->law[SLOT_TABLES] = &law_tables_of_grains;
 }
 
 static bool any_wall_heat(const scene *scene, wall_heat_kind kind)
@@ -103,7 +119,8 @@ static void derive_heat(const scene *scene, live_laws *out)
     const environment *e = &scene->environment;
     bool profile = (e->temperature_k.given && e->temperature_k.kind == QUANTITY_AXIS) ||
                    (e->gas_velocity_m_s.given && e->gas_velocity_m_s.kind == QUANTITY_AXIS);
-    out->law[SLOT_TEMPERATURE] = temperature_law(out);
+    derive_tables(scene, out);
+    out->law[SLOT_TEMPERATURE] = temperature_law(scene, out);
     if (out->law[SLOT_SOURCE])
         out->law[SLOT_SOURCE] = law_of_beams(scene);
     if (scene->material_count > 1)
@@ -173,7 +190,9 @@ void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, liv
         if (slot_is_listed(slot) && !scene_effect(scene, stage, slot))
             out->law[slot] = NULL;
     if (!out->law[SLOT_TANGENTIAL])
-        out->law[SLOT_SLIP] = NULL;
+        out->law[SLOT_SLIP] = out->law[SLOT_FRICTION] = NULL;
+    if (!out->law[SLOT_CONDUCTION])
+        out->law[SLOT_CONDUCTIVITY] = NULL;
     if (!out->law[SLOT_BOND])
         out->law[SLOT_BONDING] = NULL;
     if (!out->law[SLOT_MODULUS])
@@ -181,7 +200,7 @@ void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, liv
     if (!out->law[SLOT_RADIUS])
         out->law[SLOT_EXPANSION] = NULL;
     if (out->law[SLOT_TEMPERATURE])
-        out->law[SLOT_TEMPERATURE] = temperature_law(out);
+        out->law[SLOT_TEMPERATURE] = temperature_law(scene, out);
     if (!out->law[SLOT_CONDUCTION])
         out->law[SLOT_WALL_HEAT] = NULL;
     if (!out->law[SLOT_CONVECTION] && !out->law[SLOT_RADIATION])
@@ -201,6 +220,7 @@ static const char *none_file(slot_id slot)
         [SLOT_RADIATION] = "none/radiation.cl",     [SLOT_SOURCE] = "none/source.cl",           [SLOT_HEAT_GENERATION] = "none/heat_generation.cl",
         [SLOT_THERMAL_GROUPS] = "none/thermal_groups.cl", [SLOT_HEAT_TALLY] = "none/heat_tally.cl",
         [SLOT_MODULUS] = "none/modulus.cl",         [SLOT_SOFTENING] = "none/softening.cl",
+        [SLOT_TABLES] = "none/tables.cl",           [SLOT_CONDUCTIVITY] = "none/conductivity.cl", [SLOT_FRICTION] = "none/friction.cl",
         [SLOT_RADIUS] = "none/radius.cl",           [SLOT_EXPANSION] = "none/expansion.cl",
         [SLOT_DISSIPATION] = "none/dissipation.cl", [SLOT_LEDGER] = "none/ledger.cl",           [SLOT_DISSIPATION_HEAT] = "none/dissipation_heat.cl",
         [SLOT_BODY] = "none/body.cl",               [SLOT_ORIENTATION] = "none/orientation.cl", [SLOT_INTEGRATOR] = NULL,

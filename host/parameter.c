@@ -120,7 +120,9 @@ static status read_properties(reader *r, const section *s, int node, void *targe
         const parameter row = parameter_of_property(s->properties()[k]);
         int found = document_find(r->document, node, row.key);
         value[k] = NAN;
-        if (found)
+        if (found && property_is_tabled(s->properties()[k]) && document_is_mapping(r->document, found))
+            TRY(read_property_table(r, &row, s->properties()[k], found, &value[k]));
+        else if (found)
             TRY(parameter_number(r, &row, found, &value[k]));
     }
     return STATUS_OK;

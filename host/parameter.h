@@ -87,6 +87,8 @@ status parameter_word(reader *r, const char *key, int node, const char **out);
 /* A list, or an error; `least` entries at least. */
 status parameter_list_length(reader *r, const parameter *row, int node, int *out);
 
+/* A property that is a table against temperature: keeps it in the scene, and the number that stands for it in *value (scene_quantity.c). */
+status read_property_table(reader *r, const parameter *row, const property *property, int node, double *value);
 /* A property as a row. */
 parameter parameter_of_property(const property *p);
 /* "Pa" from "youngs_modulus_pa"; NULL where the key ends in no unit. */

@@ -88,6 +88,12 @@ double material_value(const contact_class *class, int material, const property *
     return scene_material(class->scene, material, property);
 }
 
+double interaction_constant(const contact_class *class, const property *property)
+{
+    const property_table *table = scene_interaction_table(class->scene, class->stage, class->material_a, class->material_b, class->wall, property);
+    return table ? scene_table_constant(class->scene, table) : interaction_value(class, property);
+}
+
 double normal_damping_ratio(const contact_class *class, double (*invert)(double restitution))
 {
     double ratio = interaction_value(class, &property_normal_damping);

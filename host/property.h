@@ -22,6 +22,8 @@ extern const property property_expansion, property_reference_temperature;
 /* Ratio to critical damping of the normal law: as given, or from the coefficient of restitution through `invert`, or 0. */
 double normal_damping_ratio(const contact_class *class, double (*invert)(double restitution));
 double interaction_value(const contact_class *class, const property *property);
+/* The same as the kernels take what may be a table: its number, or -1 - its row. */
+double interaction_constant(const contact_class *class, const property *property);
 double material_value(const contact_class *class, int material, const property *property);
 /* 1/E* = sum (1 - nu^2)/E over the bodies that deform (TM Eq. 3, Remark 1). */
 double effective_modulus(const contact_class *class);

@@ -68,6 +68,7 @@ typedef struct search {
     int wall;
     bool ended;
     double value;
+    const double *at; /* where it stands */
 } search;
 
 static void look_at(search *find, const double *value)
@@ -76,6 +77,7 @@ static void look_at(search *find, const double *value)
         return;
     if (!isnan(value[find->wanted])) {
         find->value = value[find->wanted];
+        find->at = &value[find->wanted];
         find->ended = true;
     }
     for (int k = 0; find->closer[k] >= 0; k++)
@@ -113,17 +115,23 @@ static void look_everywhere(search *find, const scene *s, int stage)
     look_through(find, s->interaction, s->interaction_count, true);
 }
 
-static double written_value(const scene *s, int stage, int material_a, int material_b, int w, const property *wanted)
+static const double *written_place(const scene *s, int stage, int material_a, int material_b, int w, const property *wanted)
 {
     const int index = property_index(interaction_properties(), wanted);
     if (index < 0)
-        return NAN;
+        return NULL;
     search find = {.wanted = index, .wall = w, .value = NAN};
     find_hiders(wanted, find.closer);
     find.a = s->material[material_a].name;
     find.b = w >= 0 ? s->wall[w].name : s->material[material_b].name;
     look_everywhere(&find, s, stage < s->stage_count ? stage : s->stage_count - 1);
-    return find.value;
+    return find.at;
+}
+
+static double written_value(const scene *s, int stage, int material_a, int material_b, int w, const property *wanted)
+{
+    const double *place = written_place(s, stage, material_a, material_b, w, wanted);
+    return place ? *place : NAN;
 }
 
 double scene_interaction(const scene *s, int stage, int material_a, int material_b, int w, const property *wanted)
@@ -138,6 +146,64 @@ double scene_interaction(const scene *s, int stage, int material_a, int material
 bool scene_interaction_given(const scene *s, int stage, int material_a, int material_b, int w, const property *wanted)
 {
     return !isnan(written_value(s, stage, material_a, material_b, w, wanted));
+}
+
+static const property_table *table_of(const scene *s, const double *place)
+{
+    for (int k = 0; place && k < s->table_count; k++)
+        if (s->property_table[k].of == place)
+            return &s->property_table[k];
+    return NULL;
+}
+
+const property_table *scene_interaction_table(const scene *s, int stage, int material_a, int material_b, int w, const property *wanted)
+{
+    const double *place = NULL;
+    for (const property *p = wanted; p && !place && s->table_count > 0; p = p->fallback_property)
+        place = written_place(s, stage, material_a, material_b, w, p);
+    return table_of(s, place);
+}
+
+const property_table *scene_material_table(const scene *s, int m, const property *wanted)
+{
+    int index = property_index(material_properties(), wanted);
+    return index >= 0 ? table_of(s, &s->material[m].value[index]) : NULL;
+}
+
+bool scene_has_material_table(const scene *s, const property *wanted)
+{
+    for (int m = 0; m < s->material_count; m++)
+        if (scene_material_table(s, m, wanted))
+            return true;
+    return false;
+}
+
+bool scene_has_interaction_table(const scene *s, const property *wanted)
+{
+    for (int stage = -1; s->table_count > 0 && stage < s->stage_count; stage++)
+        for (int a = 0; a < s->material_count; a++)
+            for (int p = 0; p < s->material_count + s->wall_count; p++) {
+                int b = p < s->material_count ? p : -1, w = p < s->material_count ? -1 : p - s->material_count;
+                if (scene_interaction_table(s, stage, a, b, w, wanted))
+                    return true;
+            }
+    return false;
+}
+
+double property_table_at(const property_table *t, double temperature)
+{
+    int k = 0;
+    while (k + 1 < t->count && temperature >= t->temperature_k[k + 1])
+        k++;
+    if (k + 1 == t->count || temperature <= t->temperature_k[k])
+        return t->value[k];
+    double share = (temperature - t->temperature_k[k]) / (t->temperature_k[k + 1] - t->temperature_k[k]);
+    return t->value[k] + share * (t->value[k + 1] - t->value[k]);
+}
+
+double scene_table_constant(const scene *s, const property_table *table)
+{
+    return -1.0 - (double)(table - s->property_table);
 }
 
 double scene_material(const scene *s, int m, const property *wanted)
@@ -293,6 +359,11 @@ void scene_free(scene *s)
     }
     for (int k = 0; k < s->stage_count; k++)
         free_stage(&s->stage[k]);
+    for (int k = 0; k < s->table_count; k++) {
+        free(s->property_table[k].temperature_k);
+        free(s->property_table[k].value);
+    }
+    free(s->property_table);
     free_interactions(s->interaction, s->interaction_count);
     quantity_free(&s->environment.temperature_k);
     quantity_free(&s->environment.gas_velocity_m_s);

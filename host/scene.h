@@ -289,6 +289,14 @@ typedef struct study_spec {
     double average_from_s;   /* with seeds: answers are averaged from this time on; NAN: the last sample */
 } study_spec;
 
+/* A property as a table against temperature: linear between the places, constant outside. Where one number has to do it is the largest value, of
+ * specific heats the smallest. */
+typedef struct property_table {
+    const double *of; /* where that number stands */
+    int count, value_count;
+    double *temperature_k, *value;
+} property_table;
+
 typedef struct scene {
     char *title;
     int dimensions;
@@ -304,6 +312,8 @@ typedef struct scene {
     material *material;
     int interaction_count;
     interaction *interaction;
+    int table_count;
+    property_table *property_table;
     int group_count;
     particle_group *group;
     int wall_group_count;
@@ -333,6 +343,16 @@ double scene_interaction(const scene *scene, int stage, int material_a, int mate
 double scene_material(const scene *scene, int material, const property *property);
 /* True when the value above was written in the scene rather than taken from a fallback. */
 bool scene_interaction_given(const scene *scene, int stage, int material_a, int material_b, int wall, const property *property);
+
+/* The tables of such properties; NULL where they are numbers. */
+const property_table *scene_interaction_table(const scene *scene, int stage, int material_a, int material_b, int wall, const property *property);
+const property_table *scene_material_table(const scene *scene, int material, const property *property);
+/* Some material has a table of it; some interaction has. */
+bool scene_has_material_table(const scene *scene, const property *property);
+bool scene_has_interaction_table(const scene *scene, const property *property);
+double property_table_at(const property_table *table, double temperature);
+/* -1 - row: how the kernels are told. */
+double scene_table_constant(const scene *scene, const property_table *table);
 
 /* Prescribed motion of a wall at the start: its own, or its group's. */
 const motion_list *scene_wall_motion(const scene *scene, int wall);

@@ -31,6 +31,12 @@ bool scene_outputs(const scene *s, const char *name)
     return lists(s->output.fields, s->output.field_count, name) || lists(s->output.observables, s->output.observable_count, name);
 }
 
+static bool scene_has_friction_table(const scene *s)
+{
+    return scene_effect(s, -1, SLOT_TANGENTIAL) &&
+           (scene_has_interaction_table(s, &property_friction_static) || scene_has_interaction_table(s, &property_friction_dynamic));
+}
+
 bool scene_has_temperature(const scene *s)
 {
     static const char *const names[] = {"temperature", "thermal_energy", "temperature_min", "temperature_mean", "temperature_max"};
@@ -38,7 +44,7 @@ bool scene_has_temperature(const scene *s)
         if (scene_outputs(s, names[k]))
             return true;
     const effect *bond = scene_effect(s, -1, SLOT_BOND);
-    if (scene_effect(s, -1, SLOT_MODULUS) || scene_effect(s, -1, SLOT_RADIUS))
+    if (scene_effect(s, -1, SLOT_MODULUS) || scene_effect(s, -1, SLOT_RADIUS) || scene_has_friction_table(s))
         return true;
     return scene_has_heat(s) || scene_tallies_heat(s) || (bond && bonding_reads_temperature(bond->law, bond->option));
 }
@@ -188,6 +194,11 @@ status scene_check_heat(reader *r)
             return document_fail(r->document, document_at(r->document, "materials[%d]", m), r->why,
                                  "the material `%s` lacks `%s`, which every scene with temperatures needs", s->material[m].name,
                                  property_specific_heat.key);
+    const effect *modulus = scene_effect(s, -1, SLOT_MODULUS);
+    for (int m = 0; m < s->material_count && !(modulus && modulus->law == &law_modulus_table); m++)
+        if (scene_material_table(s, m, &property_youngs_modulus))
+            return document_fail(r->document, document_at(r->document, "materials[%d].%s", m, property_youngs_modulus.key), r->why,
+                                 "a table of `%s` needs the law that reads it; add {slot: modulus, law: table}, or give a number", property_youngs_modulus.key);
     if (scene_outputs(s, "modulus_factor") && !scene_effect(s, -1, SLOT_MODULUS))
         return document_fail(r->document, document_at(r->document, "output.fields"), r->why,
                              "the field `modulus_factor` needs a law of the modulus, like {slot: modulus, law: exponential_softening}");

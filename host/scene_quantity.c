@@ -1,5 +1,8 @@
 /* Values that may be numbers or tables: in time, or along an axis. */
+#include "property.h"
 #include "scene_table.h"
+
+#include <clast/shared.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -112,6 +115,54 @@ status read_number_anywhere(reader *r, const parameter *row, int node, void *tar
 status read_vector_anywhere(reader *r, const parameter *row, int node, void *target)
 {
     return read_quantity(r, row, node, 3, true, true, target);
+}
+
+/* ---- properties against temperature ---- */
+
+static const parameter property_table_rows[] = {
+    {.key = "temperature_k", .type = PARAMETER_NUMBERS, .unit = "K", .offset = offsetof(property_table, temperature_k),
+     .count = offsetof(property_table, count), .required = true, .doc = "temperatures, rising"},
+    {.key = "value", .type = PARAMETER_NUMBERS, .offset = offsetof(property_table, value), .count = offsetof(property_table, value_count),
+     .required = true, .doc = "the property there, linear between them and constant outside"},
+    {0},
+};
+const section property_table_section = {.name = "table", .doc = "A property of a material or an interaction that depends on temperature, where the key allows a table.",
+                                        .row = property_table_rows};
+
+static status check_property_table(reader *r, const parameter *row, int node, const property_table *t)
+{
+    int places = document_find(r->document, node, "temperature_k"), values = document_find(r->document, node, "value");
+    if (t->count != t->value_count || t->count == 0)
+        return document_fail(r->document, values, r->why, "`value` has %d entries and `temperature_k` %d; give one value for each temperature", t->value_count, t->count);
+    if (t->count > CLAST_TABLE_PLACES)
+        return document_fail(r->document, places, r->why, "a table against temperature holds at most %d places; it has %d", CLAST_TABLE_PLACES, t->count);
+    for (int k = 0; k < t->count; k++) {
+        char allowed[128];
+        parameter_range(row, allowed, sizeof allowed);
+        if (k > 0 && !(t->temperature_k[k] > t->temperature_k[k - 1]))
+            return document_fail(r->document, document_item(r->document, places, k), r->why, "`temperature_k` must rise from entry to entry; %.10g follows %.10g",
+                                 t->temperature_k[k], t->temperature_k[k - 1]);
+        if (t->value[k] < row->low || t->value[k] > row->high || (row->open_low && t->value[k] == row->low))
+            return document_fail(r->document, document_item(r->document, values, k), r->why, "`%s` must be %s everywhere in the table; it is %.10g", row->key, allowed, t->value[k]);
+    }
+    return STATUS_OK;
+}
+
+status read_property_table(reader *r, const parameter *row, const property *property, int node, double *value)
+{
+    scene *s = r->scene;
+    s->property_table = realloc(s->property_table, sizeof *s->property_table * (size_t)(s->table_count + 1));
+    property_table *t = &s->property_table[s->table_count];
+    if (!s->property_table)
+        return fail(r->why, STATUS_ERROR, "out of memory");
+    *t = (property_table){.of = value};
+    s->table_count++;
+    TRY(parameter_section(r, &property_table_section, node, t));
+    TRY(check_property_table(r, row, node, t));
+    *value = t->value[0];
+    for (int k = 1; k < t->count; k++)
+        *value = property == &property_specific_heat ? fmin(*value, t->value[k]) : fmax(*value, t->value[k]);
+    return STATUS_OK;
 }
 
 double quantity_component(const quantity *q, double x, int component)

@@ -97,6 +97,9 @@ static void write_properties(FILE *page, const property *const *all)
         else if (!isnan((*p)->fallback))
             snprintf(shown, sizeof shown, "%.10g", (*p)->fallback);
         row.shown = shown;
+        char doc[256];
+        snprintf(doc, sizeof doc, "%s%s", row.doc, property_is_tabled(*p) ? "; a number, or a table against temperature" : "");
+        row.doc = doc;
         write_row(page, &row, NULL);
     }
 }
@@ -169,6 +172,7 @@ static void write_page(FILE *page)
     write_section(page, "`environment`", &environment_section);
     write_section(page, "`gas`", &gas_section);
     write_section(page, "Values that are tables", &quantity_section);
+    write_section(page, "Tables against temperature", &property_table_section);
     write_section(page, "`effects`", &effect_section);
     for (const law *const *l = laws; *l; l++)
         write_law(page, *l);

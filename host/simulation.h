@@ -87,7 +87,7 @@ typedef struct step_limit {
 
 /* Tables of heat on the device, and the host's copies of rows that vary from step to step. */
 typedef struct heat_tables {
-    cl_mem constants, profile, environment, walls, areas, groups;
+    cl_mem constants, tables, profile, environment, walls, areas, groups;
     int rows;
     bool vary;
     clast_environment *environment_rows;

@@ -1,13 +1,13 @@
-/* Moduli of the grains at their temperatures, where the device has not set them yet: at the start, and where a stage takes softening up. */
+/* What follows the grains' temperatures where the device has not set it yet: at the start, and where a stage takes a law up. */
 #include "laws/fields.h"
 #include "laws/laws.h"
 #include "simulation.h"
 
 #include <stdlib.h>
 
-status softening_refresh(simulation *sim, failure *why)
+static status refresh(simulation *sim, const char *name, double (*at)(const scene *scene, int material, double temperature), failure *why)
 {
-    stored_field *factor = store_find(sim, field_modulus_factor.name), *material = store_find(sim, "material");
+    stored_field *factor = store_find(sim, name), *material = store_find(sim, "material");
     if (!factor)
         return STATUS_OK;
     uint64_t n = (uint64_t)sim->stride;
@@ -17,10 +17,16 @@ status softening_refresh(simulation *sim, failure *why)
     if (result == STATUS_OK && material)
         result = store_read(sim, material->mem, 0, 4 * n, of, why);
     for (uint64_t i = 0; i < n && result == STATUS_OK; i++)
-        value[i] = modulus_factor_at(sim->scene, of[i], value[i]);
+        value[i] = at(sim->scene, of[i], value[i]);
     if (result == STATUS_OK)
         result = store_put_grains(sim, factor, sim->stride, value, why);
     free(value);
     free(of);
     return result;
+}
+
+status softening_refresh(simulation *sim, failure *why)
+{
+    TRY(refresh(sim, field_modulus_factor.name, modulus_factor_at, why));
+    return refresh(sim, field_resistivity.name, resistivity_at, why);
 }

@@ -126,6 +126,8 @@ typedef struct contact {
     real neck;           /* radius of a neck of solid material between the two, m; 0 without */
     real touch;          /* overlap whether or not the two act on each other with forces, m */
     real growth_i, growth_j;   /* of the radii in the last step, m */
+    real resists_i, resists_j; /* factors of the thermal resistivities, k/k(T) */
+    __global const real *tables; /* of properties by temperature */
     real modulus_i, modulus_j; /* factors of Young's moduli; 1 at a wall */
     real temperature_i, temperature_j; /* K; of a wall: that of the grain */
     real dt;             /* of the step to come */
@@ -200,6 +202,7 @@ typedef struct grain {
     real surroundings; /* temperature of the environment where the grain is, K */
     vec3 gas;          /* velocity of the gas there */
     __global const real *value; /* constants of its material */
+    __global const real *tables; /* of properties by temperature */
 } grain;
 
 /* Heat that a grain gains, by path: W, or J over a step. */

@@ -90,11 +90,12 @@ const law law_overlap_area = {
 
 static void derive_batchelor_obrien(const contact_class *class, const double *option, double *parameter)
 {
-    double overlap, time, sum = resistivity(class, class->material_a);
+    double overlap, time, own = resistivity(class, class->material_a), sum = own;
     if (class->material_b >= 0)
         sum += resistivity(class, class->material_b);
     soften(class, option[0], &overlap, &time);
     parameter[0] = 4.0 * time * sqrt(overlap) / sum;
+    parameter[1] = own / sum;
 }
 
 const law law_batchelor_obrien = {
@@ -109,7 +110,7 @@ const law law_batchelor_obrien = {
     .reads_temperature = true,
     .pair_fields = {&field_heat},
     .particle_fields = {&field_heat},
-    .parameters = {"CONDUCTION_STRENGTH"},
+    .parameters = {"CONDUCTION_STRENGTH", "CONDUCTION_SHARE"},
     .derive = derive_batchelor_obrien,
 };
 

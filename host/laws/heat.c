@@ -10,7 +10,13 @@ static void derive_temperature(const scene *scene, int stage, int material, cons
 {
     (void)stage;
     (void)option;
-    parameter[0] = scene_material(scene, material, &property_specific_heat);
+    parameter[0] = material_constant(scene, material, &property_specific_heat);
+}
+
+static void derive_temperature_tabled(const scene *scene, int stage, int material, const double *option, double *parameter)
+{
+    derive_temperature(scene, stage, material, option, parameter);
+    parameter[1] = scene_material(scene, material, &property_specific_heat);
 }
 
 /* clang-format off */
@@ -19,21 +25,38 @@ static void derive_temperature(const scene *scene, int stage, int material, cons
     .doc = "Temperature of every grain, advanced explicitly.",                       \
     .source = "TM Eq. 28",                                                           \
     .kernel_file = "effect/temperature.cl",                                          \
-    .particle_fields = {&field_temperature, &field_grain_constants},                 \
-    .grain_parameters = {"SPECIFIC_HEAT"},                                           \
-    .derive_grain = derive_temperature
+    .particle_fields = {&field_temperature, &field_grain_constants}
+#define CONSTANT_CAPACITY .grain_parameters = {"SPECIFIC_HEAT"}, .derive_grain = derive_temperature
+#define TABLED_CAPACITY .grain_parameters = {"SPECIFIC_HEAT", "SPECIFIC_HEAT_LEAST"}, .derive_grain = derive_temperature_tabled
 /* clang-format on */
 
 const law law_temperature_grains = {
     .name = "of grains",
     TEMPERATURE,
-    .more_files = {"none/temperature_pairs.cl"},
+    CONSTANT_CAPACITY,
+    .more_files = {"effect/capacity_constant.cl", "none/temperature_pairs.cl"},
 };
 
 const law law_temperature_pairs = {
     .name = "of grains and contacts",
     TEMPERATURE,
-    .more_files = {"effect/temperature_pairs.cl"},
+    CONSTANT_CAPACITY,
+    .more_files = {"effect/capacity_constant.cl", "effect/temperature_pairs.cl"},
+    .pair_fields = {&field_temperature},
+};
+
+const law law_temperature_grains_tabled = {
+    .name = "of grains, by enthalpy",
+    TEMPERATURE,
+    TABLED_CAPACITY,
+    .more_files = {"effect/capacity_tabled.cl", "none/temperature_pairs.cl"},
+};
+
+const law law_temperature_pairs_tabled = {
+    .name = "of grains and contacts, by enthalpy",
+    TEMPERATURE,
+    TABLED_CAPACITY,
+    .more_files = {"effect/capacity_tabled.cl", "effect/temperature_pairs.cl"},
     .pair_fields = {&field_temperature},
 };
 

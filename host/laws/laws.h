@@ -10,6 +10,12 @@ extern const law law_precision_mixed, law_composition_several, law_periodic_box,
     law_walls_planes, law_walls_finite, law_walls_round, law_orientation_quaternion, law_semi_implicit_euler, law_velocity_verlet, law_velocity_verlet_spin,
     law_dissipation_tracked, law_dissipation_synchronous, law_ledger_energies, law_fraction, law_exponential_softening, law_softening_tracked;
 
+extern const law law_tables_of_pairs, law_tables_of_grains, law_tables_of_both, law_conductivity_tabled, law_friction_tabled, law_modulus_table,
+    law_temperature_grains_tabled, law_temperature_pairs_tabled;
+/* Of a material's property, as the kernels take what may be a table. */
+double material_constant(const struct scene *scene, int material, const property *property);
+/* Factor of a grain's thermal resistivity at a temperature. */
+double resistivity_at(const struct scene *scene, int material, double temperature);
 extern const law law_linear_expansion, law_expansion_tracked;
 /* Radius at a temperature over the one given; 1 without a law of expansion. */
 double expansion_factor(const struct scene *scene, int material, double temperature);

@@ -75,6 +75,30 @@ const law law_exponential_softening = {
     .derive_grain = derive_exponential,
 };
 
+static void derive_table(const scene *scene, int stage, int material, const double *option, double *parameter)
+{
+    (void)stage;
+    (void)option;
+    parameter[0] = material_constant(scene, material, &property_youngs_modulus);
+    parameter[1] = 1.0 / scene_material(scene, material, &property_youngs_modulus);
+}
+
+const law law_modulus_table = {
+    .name = "table",
+    .slot = SLOT_MODULUS,
+    .doc = "Young's modulus follows a table against the grain's temperature; Poisson's ratio stays, so friction and rolling follow too.",
+    .source = "TM Eq. 42 by a table (docs/theory.md)",
+    .kernel_file = "effect/modulus_pair.cl",
+    .more_files = {"effect/modulus_tabled.cl"},
+    .material_needs = {&property_youngs_modulus, &property_poissons_ratio},
+    .pair_fields = {&field_modulus_factor},
+    .particle_fields = {&field_modulus_factor},
+    .parameters = {"MODULUS_SHARE_NORMAL", "MODULUS_SHARE_TANGENTIAL", "MODULUS_SHARE_ROLLING", "MODULUS_MOST"},
+    .derive = derive_shares,
+    .grain_parameters = {"MODULUS_TABLE", "MODULUS_INVERSE"},
+    .derive_grain = derive_table,
+};
+
 const law law_softening_tracked = {
     .name = "tracked",
     .slot = SLOT_SOFTENING,
@@ -87,6 +111,10 @@ const law law_softening_tracked = {
 double modulus_factor_at(const scene *scene, int material, double temperature)
 {
     double p[3];
+    if (scene_effect(scene, -1, SLOT_MODULUS)->law == &law_modulus_table) {
+        const property_table *table = scene_material_table(scene, material, &property_youngs_modulus);
+        return table ? property_table_at(table, temperature) / scene_material(scene, material, &property_youngs_modulus) : 1.0;
+    }
     derive_exponential(scene, -1, material, NULL, p);
     return fmax(p[2], fmin(1.0, exp(p[1] * (1.0 - temperature / p[0]))));
 }

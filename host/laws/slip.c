@@ -4,14 +4,14 @@
 static void derive_slip(const contact_class *class, const double *option, double *parameter)
 {
     (void)option;
-    parameter[0] = interaction_value(class, &property_friction_static);
-    parameter[1] = interaction_value(class, &property_friction_dynamic);
+    parameter[0] = interaction_constant(class, &property_friction_static);
+    parameter[1] = interaction_constant(class, &property_friction_dynamic);
 }
 
 static void derive_slip_single(const contact_class *class, const double *option, double *parameter)
 {
     (void)option;
-    parameter[0] = interaction_value(class, &property_friction_static);
+    parameter[0] = interaction_constant(class, &property_friction_static);
 }
 
 const law law_slip_single = {

@@ -190,6 +190,9 @@ typedef struct clast_columns {
 #define CLAST_TALLY_DISSIPATION 5
 #define CLAST_TALLIES 6
 
+/* Places of a table of a property against temperature. */
+#define CLAST_TABLE_PLACES 32
+
 #define CLAST_LEVELS_MAX 12
 
 /* One level of the cell grid: radii within a factor of two. Coordinates wrap at `cells`, so that no position is outside. */

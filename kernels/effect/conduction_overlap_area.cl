@@ -17,7 +17,7 @@
 INLINE real conduction_overlap_area(const contact *c, real d)
 {
     real ri = c->radius_i, rj = c->radius_j, both = ri + rj, distance = both - d;
-    real resistance = ri * c->value[CONDUCTION_RESISTIVITY_I] + rj * c->value[CONDUCTION_RESISTIVITY_J] + c->value[CONDUCTION_FILM];
+    real resistance = ri * (c->resists_i * c->value[CONDUCTION_RESISTIVITY_I]) + rj * (c->resists_j * c->value[CONDUCTION_RESISTIVITY_J]) + c->value[CONDUCTION_FILM];
     real through = c->neck > R(0.0) ? c->neck : R(0.0), share = R(3.14159265358979324) * through * through * both;
     real cut = d * (R(2.0) * ri - d) * (R(2.0) * rj - d) * (R(2.0) * both - d) * both;
     real circle = R(0.78539816339744831) * c->value[CONDUCTION_TIME_FACTOR] * cut / (distance * distance * distance * resistance);

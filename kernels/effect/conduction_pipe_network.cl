@@ -32,7 +32,7 @@ INLINE real conduction_pipes(const contact *c, real d)
     square = c->neck > R(0.0) ? c->neck * c->neck : square;
     bool touches = square > R(0.0);
     real a = sqrt(touches ? square : ri * rj);
-    real i = conduction_pipe(c->value[CONDUCTION_K_I], ri, a), j = conduction_pipe(c->value[CONDUCTION_K_J], rj, a);
+    real i = conduction_pipe(c->value[CONDUCTION_K_I] / c->resists_i, ri, a), j = conduction_pipe(c->value[CONDUCTION_K_J] / c->resists_j, rj, a);
     real sum = i + j;
     return touches && sum > R(0.0) ? c->value[CONDUCTION_TIME_FACTOR] * i * j / sum : R(0.0);
 }

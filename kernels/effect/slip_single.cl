@@ -14,13 +14,13 @@ typedef struct slip_state {
 INLINE real slip_limit(const contact *c, real normal, const slip_state *s)
 {
     (void)s;
-    return c->value[FRICTION_STATIC] * normal;
+    return FRICTION_OF(c, FRICTION_STATIC) * normal;
 }
 
 /* 1 where the trial force holds. */
 INLINE real slip_factor(const contact *c, real normal, real trial, slip_state *s)
 {
     (void)s;
-    real limit = c->value[FRICTION_STATIC] * normal;
+    real limit = FRICTION_OF(c, FRICTION_STATIC) * normal;
     return trial > limit ? limit / trial : R(1.0);
 }

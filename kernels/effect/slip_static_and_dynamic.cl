@@ -15,14 +15,14 @@ typedef struct slip_state {
 
 INLINE real slip_limit(const contact *c, real normal, const slip_state *s)
 {
-    return (s->sliding > R(0.5) ? c->value[FRICTION_DYNAMIC] : c->value[FRICTION_STATIC]) * normal;
+    return (s->sliding > R(0.5) ? FRICTION_OF(c, FRICTION_DYNAMIC) : FRICTION_OF(c, FRICTION_STATIC)) * normal;
 }
 
 /* 1 where the trial force holds. */
 INLINE real slip_factor(const contact *c, real normal, real trial, slip_state *s)
 {
-    real kinetic = c->value[FRICTION_DYNAMIC] * normal;
-    real limit = s->sliding > R(0.5) ? kinetic : c->value[FRICTION_STATIC] * normal;
+    real kinetic = FRICTION_OF(c, FRICTION_DYNAMIC) * normal;
+    real limit = s->sliding > R(0.5) ? kinetic : FRICTION_OF(c, FRICTION_STATIC) * normal;
     bool slides = trial > limit;
     s->sliding = slides && c->overlap > R(0.0) ? R(1.0) : R(0.0);
     return slides ? kinetic / trial : R(1.0);

@@ -13,6 +13,23 @@ INLINE real temperature_capacity(const grain *g)
     return R(1.0);
 }
 
+INLINE real temperature_capacity_least(const grain *g)
+{
+    return temperature_capacity(g);
+}
+
+INLINE real temperature_rise(const grain *g, real gain)
+{
+    (void)g;
+    return gain;
+}
+
+INLINE real temperature_heat(const grain *g, real rise)
+{
+    (void)g;
+    return rise;
+}
+
 INLINE precise temperature_after(precise temperature, real rise)
 {
     (void)rise;

@@ -3,11 +3,11 @@
 #define PAIR_FIELDS(READ, WRITE)                                                                                          \
     READ(int, owner) READ(int, other) READ(exact, position) READ(exact, velocity) READ(exact, radius) READ(real, mass)          \
     READ(real, contact_constants) \
-    WRITE(real, force) COMPOSITION_PAIR_FIELDS(READ, WRITE) MOTION_PAIR_FIELDS(READ, WRITE) ROTATION_PAIR_FIELDS(READ, WRITE)    \
+    WRITE(real, force) TABLES_PAIR_FIELDS(READ, WRITE) COMPOSITION_PAIR_FIELDS(READ, WRITE) MOTION_PAIR_FIELDS(READ, WRITE) ROTATION_PAIR_FIELDS(READ, WRITE)    \
     BONDING_PAIR_FIELDS(READ, WRITE) BOND_PAIR_FIELDS(READ, WRITE) COHESION_PAIR_FIELDS(READ, WRITE)                           \
     SLIP_PAIR_FIELDS(READ, WRITE) TANGENTIAL_PAIR_FIELDS(READ, WRITE) ROLLING_PAIR_FIELDS(READ, WRITE)                                        \
     DISSIPATION_PAIR_FIELDS(READ, WRITE) DISSIPATION_HEAT_PAIR_FIELDS(READ, WRITE) LEDGER_PAIR_FIELDS(READ, WRITE) WALLS_PAIR_FIELDS(READ, WRITE)                                  \
-    TEMPERATURE_PAIR_FIELDS(READ, WRITE) MODULUS_PAIR_FIELDS(READ, WRITE) SOFTENING_PAIR_FIELDS(READ, WRITE) EXPANSION_PAIR_FIELDS(READ, WRITE)                       \
+    TEMPERATURE_PAIR_FIELDS(READ, WRITE) MODULUS_PAIR_FIELDS(READ, WRITE) SOFTENING_PAIR_FIELDS(READ, WRITE) EXPANSION_PAIR_FIELDS(READ, WRITE) CONDUCTIVITY_PAIR_FIELDS(READ, WRITE)                       \
     CONDUCTION_PAIR_FIELDS(READ, WRITE) WALL_HEAT_PAIR_FIELDS(READ, WRITE) INTEGRATOR_PAIR_FIELDS(READ, WRITE)
 #define PAIR_DECLARE PAIR_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PAIR_PASS PAIR_FIELDS(PASS, PASS)
@@ -45,6 +45,9 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     c->modulus_j = MODULUS_OF(j);
     c->growth_i = GROWTH_OF(i);
     c->growth_j = GROWTH_OF(j);
+    c->resists_i = RESISTIVITY_OF(i);
+    c->resists_j = RESISTIVITY_OF(j);
+    c->tables = TABLES_OF_PAIRS;
     c->ahead = sub(DISSIPATION_AHEAD(i), DISSIPATION_AHEAD(j));
     c->ahead_spin_i = DISSIPATION_AHEAD_SPIN(i);
     c->ahead_spin_j = DISSIPATION_AHEAD_SPIN(j);
@@ -91,6 +94,8 @@ INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_
     c->modulus_j = R(1.0);
     c->growth_i = GROWTH_OF(i);
     c->growth_j = R(0.0);
+    c->resists_i = c->resists_j = RESISTIVITY_OF(i);
+    c->tables = TABLES_OF_PAIRS;
     c->ahead = DISSIPATION_AHEAD(i);
     c->ahead_spin_i = DISSIPATION_AHEAD_SPIN(i);
     c->ahead_spin_j = v3(R(0.0), R(0.0), R(0.0));

@@ -66,10 +66,19 @@ INLINE void frozen_flows(const clast_launch *launch, int i, grain *g, grain_heat
     h->radiation = radiation_coefficient(g, g->temperature) * apart;
 }
 
-/* K/s */
-INLINE real frozen_rate(const grain *g, const grain_heat *h)
+/* The grain as it is at the start of the step: rises of the step are counted in heat over its capacity, so that what is stored is what flows in
+ * though the capacity depends on temperature. */
+INLINE grain frozen_start(int i, const grain *g PARTICLE_DECLARE)
 {
-    return (h->contacts + h->sources + (h->convection + h->radiation)) / temperature_capacity(g);
+    grain start = *g;
+    start.temperature = TEMPERATURE_OF_GRAIN(i);
+    return start;
+}
+
+/* K/s, counted so. */
+INLINE real frozen_rate(const grain *start, const grain_heat *h)
+{
+    return (h->contacts + h->sources + (h->convection + h->radiation)) / temperature_capacity(start);
 }
 
 /* The rise of grain i, or that which is prescribed for it in a row of the tables. */
@@ -91,9 +100,11 @@ __kernel void heat_frozen_stage(const clast_launch launch, FROZEN_DECLARE, __glo
     clast_launch then = launch;
     then.heat_row = row_after;
     frozen_flows(&launch, i, &g, &h, FROZEN_PASS PARTICLE_PASS);
-    real rate = frozen_rate(&g, &h), start_rate = first ? rate : start[i];
+    grain at_start = frozen_start(i, &g PARTICLE_PASS);
+    real rate = frozen_rate(&at_start, &h), start_rate = first ? rate : start[i];
     start[i] = start_rate;
-    after[i] = frozen_held(&then, i, mu * rises[i] + nu * before[i] + slope * rate + start_slope * start_rate PARTICLE_PASS);
+    real lift = mu * temperature_lift(&at_start, rises[i]) + nu * temperature_lift(&at_start, before[i]) + slope * rate + start_slope * start_rate;
+    after[i] = frozen_held(&then, i, temperature_drop(&at_start, lift) PARTICLE_PASS);
     HEAT_TALLY_KEEP(kept, i, &h, weight, first);
 }
 
@@ -106,7 +117,8 @@ __kernel void heat_frozen_error(const clast_launch launch, FROZEN_DECLARE, __glo
     grain_heat h;
     frozen_flows(&launch, i, &g, &h, FROZEN_PASS PARTICLE_PASS);
     bool free = i < launch.particle_count && !THERMAL_GROUP_HOLDS(&launch, i);
-    real rate = frozen_rate(&g, &h), off = R(0.4) * step * (start[i] + rate) - R(0.8) * rises[i];
+    grain at_start = frozen_start(i, &g PARTICLE_PASS);
+    real rate = frozen_rate(&at_start, &h), off = R(0.4) * step * (start[i] + rate) - R(0.8) * temperature_lift(&at_start, rises[i]);
     error[i] = free ? off : R(0.0);
     rates[i] = free ? fabs(rate) : R(0.0);
 }
@@ -145,10 +157,11 @@ __kernel void heat_frozen_accept(const clast_launch launch, __global const real 
     particle_grain(&launch, i, &g PARTICLE_PASS);
     HEAT_TALLY_KEPT(kept, i, &h);
     if (all || THERMAL_GROUP_HOLDS(&launch, i))
-        h.sources = temperature_capacity(&g) * rises[i] - (h.contacts + h.convection + h.radiation);
+        h.sources = temperature_heat(&g, rises[i]) - (h.contacts + h.convection + h.radiation);
     precise after = temperature_after(TEMPERATURE_PRECISE(i), rises[i]);
     TEMPERATURE_STORE(i, after);
     MODULUS_STORE(i, &g, after);
+    RESISTIVITY_STORE(i, &g, after);
     real grown = RADIUS_STORE(i, &g, after);
     precise3 w = ROTATION_PRECISE(&launch, i);
     INTEGRATOR_KEEP_SPIN(i, RADIUS_SPIN(i, INTEGRATOR_SPIN(i, w), grown));
@@ -174,14 +187,15 @@ __kernel void heat_frozen_spectrum(const clast_launch launch, __global const rea
         sum += convection_coefficient(&g, g.temperature);
         g.surroundings = hottest;
         sum += radiation_coefficient(&g, hottest);
-        most = fmax(most, sum / temperature_capacity(&g));
+        most = fmax(most, sum / temperature_capacity_least(&g));
     }
     partial[chunk] = precise_store(precise_from(most));
 }
 
 /* ---- linear systems: steps of implicit methods, and the steady state ---- */
 
-/* What flows into a grain at its rise less what a step stores of it, sigma m c (rise - known), W; and of the matrix of what that changes by:
+/* What flows into a grain at its rise less what a step stores of it, sigma m c (rise - known), W, with what is known counted in heat as
+ * frozen_start has it; and of the matrix of what that changes by:
  * the part that a grain has with its own surroundings (`slope`), and the whole diagonal. A diagonal of zero: the temperature is given. With
  * `chord` radiation's slope is at least that of the line to the surroundings, so that no step goes past them. */
 __kernel void heat_frozen_residual(const clast_launch launch, FROZEN_DECLARE, __global const real *restrict known, __global const int *restrict fixed,
@@ -203,7 +217,9 @@ __kernel void heat_frozen_residual(const clast_launch launch, FROZEN_DECLARE, __
         links += link[s] < 0 ? R(0.0) : conductance[s];
     }
     bool given_here = i >= launch.particle_count || fixed[i] || THERMAL_GROUP_HOLDS(&launch, i);
-    real rest = h.contacts + h.sources + (h.convection + h.radiation) - stored * (rises[i] - known[i]);
+    grain at_start = frozen_start(i, &g PARTICLE_PASS);
+    real kept_heat = sigma * temperature_capacity(&at_start) * (temperature_lift(&at_start, rises[i]) - known[i]);
+    real rest = h.contacts + h.sources + (h.convection + h.radiation) - kept_heat;
     residual[i] = given_here ? R(0.0) : rest;
     slope[i] = given_here ? R(0.0) : own;
     diagonal[i] = given_here ? R(0.0) : own + links;
@@ -351,8 +367,11 @@ __kernel void heat_frozen_store(const clast_launch launch, __global const real *
     residual[i] = diagonal[i] > R(0.0) ? sigma * temperature_capacity(&g) * error[i] : R(0.0);
 }
 
-__kernel void heat_frozen_scale(__global const real *restrict from, __global real *restrict to, const real factor)
+/* A share of the heat that rises stand for, counted as frozen_start has it. */
+__kernel void heat_frozen_scale(const clast_launch launch, __global const real *restrict from, __global real *restrict to, const real factor PARTICLE_DECLARE)
 {
     int i = get_global_id(0);
-    to[i] = factor * from[i];
+    grain g;
+    particle_grain(&launch, i, &g PARTICLE_PASS);
+    to[i] = factor * temperature_lift(&g, from[i]);
 }

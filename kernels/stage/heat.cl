@@ -38,7 +38,7 @@ __kernel void heat_limit(const clast_launch launch, __global exact *restrict par
         real convection = convection_coefficient(&g, g.temperature), radiation = radiation_coefficient(&g, hottest);
         const real rates[HEAT_LIMITS] = {conduction, convection, radiation, conduction + convection + radiation};
         for (int q = 0; q < HEAT_LIMITS; q++)
-            least[q] = rates[q] > R(0.0) ? fmin(least[q], temperature_capacity(&g) / rates[q]) : least[q];
+            least[q] = rates[q] > R(0.0) ? fmin(least[q], temperature_capacity_least(&g) / rates[q]) : least[q];
     }
     for (int q = 0; q < HEAT_LIMITS; q++)
         partial[HEAT_LIMITS * chunk + q] = precise_store(precise_from(least[q]));
@@ -63,7 +63,7 @@ __kernel void heat_sums(const clast_launch launch, __global const int *restrict 
         grain g;
         particle_grain(&launch, i, &g PARTICLE_PASS);
         precise t = TEMPERATURE_PRECISE(i);
-        sum[0] = precise_add_scaled(sum[0], temperature_capacity(&g), t);
+        sum[0] = precise_add(sum[0], temperature_content(&g, t));
         sum[1] = precise_add(sum[1], t);
         sum[2] = precise_add(sum[2], precise_from(R(1.0)));
         sum[3] = precise_max(sum[3], precise_sub(precise_from(R(0.0)), t));

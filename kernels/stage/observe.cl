@@ -221,6 +221,7 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
     c.value = contact_constants + class * CONTACT_CONSTANTS;
     c.modulus_i = c.modulus_j = R(1.0);
     MODULUS_EXPECTED(&c);
+    c.resists_i = c.resists_j = R(1.0); /* the most that they conduct */
     c.dt = c.elapsed = R(0.0);
     real energy = R(0.5) * c.mass_eff * speed * speed, impact_low = R(0.0), impact_high = c.radius_eff;
     real rest_low = R(0.0), rest_high = c.radius_eff;

@@ -3,7 +3,7 @@
     READ(uint, slot_offset) READ(int, slots) READ(real, force) RADIUS_OWN(READ, WRITE) READ(real, mass) WRITE(exact, position) WRITE(exact, velocity)   \
     READ(exact, built_position) MOTION_PARTICLE_FIELDS(READ, WRITE) \
     ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE) TEMPERATURE_PARTICLE_FIELDS(READ, WRITE)                \
-    SUBSTANCE_PARTICLE_FIELDS(READ, WRITE) RADIUS_PARTICLE_FIELDS(READ, WRITE) EXPANSION_PARTICLE_FIELDS(READ, WRITE) ENVIRONMENT_PARTICLE_FIELDS(READ, WRITE) CONDUCTION_PARTICLE_FIELDS(READ, WRITE)             \
+    SUBSTANCE_PARTICLE_FIELDS(READ, WRITE) TABLES_PARTICLE_FIELDS(READ, WRITE) CONDUCTIVITY_PARTICLE_FIELDS(READ, WRITE) RADIUS_PARTICLE_FIELDS(READ, WRITE) EXPANSION_PARTICLE_FIELDS(READ, WRITE) ENVIRONMENT_PARTICLE_FIELDS(READ, WRITE) CONDUCTION_PARTICLE_FIELDS(READ, WRITE)             \
     SOURCE_PARTICLE_FIELDS(READ, WRITE) THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE) MODULUS_PARTICLE_FIELDS(READ, WRITE) DISSIPATION_PARTICLE_FIELDS(READ, WRITE) DISSIPATION_HEAT_PARTICLE_FIELDS(READ, WRITE) LEDGER_PARTICLE_FIELDS(READ, WRITE)           \
     INTEGRATOR_PARTICLE_FIELDS(READ, WRITE)
 #define PARTICLE_DECLARE PARTICLE_FIELDS(DECLARE_READ, DECLARE_WRITE)
@@ -42,6 +42,7 @@ INLINE void particle_grain(const clast_launch *launch, int i, grain *g PARTICLE_
     g->mass = mass[i];
     g->temperature = TEMPERATURE_OF_GRAIN(i);
     g->value = TEMPERATURE_CONSTANTS(SUBSTANCE_ROW(i));
+    g->tables = TABLES_OF_GRAINS;
     g->surroundings = R(0.0);
     g->gas = v3(R(0.0), R(0.0), R(0.0));
     ENVIRONMENT_AT(launch, g);
@@ -51,7 +52,7 @@ INLINE void particle_grain(const clast_launch *launch, int i, grain *g PARTICLE_
  * grows by. */
 INLINE real particle_heat(const clast_launch *launch, int i, const grain *g, grain_heat *h PARTICLE_DECLARE)
 {
-    real dt = number(launch->dt), apart = g->surroundings - g->temperature, capacity = temperature_capacity(g);
+    real dt = number(launch->dt), apart = g->surroundings - g->temperature;
     real absorbed = SOURCE_HEAT(launch, i, g), given = absorbed + generation_heat(g) + THERMAL_GROUP_HEAT(launch, i);
     h->convection = dt * (convection_coefficient(g, g->temperature) * apart);
     h->radiation = dt * (radiation_coefficient(g, g->temperature) * apart);
@@ -61,11 +62,14 @@ INLINE real particle_heat(const clast_launch *launch, int i, const grain *g, gra
     DISSIPATION_HEAT_GATHER(launch, i, rubbed);
     h->rubbed = rubbed;
     real gain = dt * (h->contacts + given) + (h->convection + h->radiation) + rubbed;
-    precise after = temperature_after(TEMPERATURE_PRECISE(i), gain / capacity);
+    precise after = temperature_after(TEMPERATURE_PRECISE(i), temperature_rise(g, gain));
     precise held = THERMAL_GROUP_TEMPERATURE(launch, i, after);
-    h->sources = dt * given + capacity * rounded(precise_sub(held, after));
+    grain then = *g;
+    then.temperature = rounded(after);
+    h->sources = dt * given + temperature_heat(&then, rounded(precise_sub(held, after)));
     TEMPERATURE_STORE(i, held);
     MODULUS_STORE(i, g, held);
+    RESISTIVITY_STORE(i, g, held);
     HEAT_TALLY_ADD(i, h);
     return RADIUS_STORE(i, g, held);
 }
