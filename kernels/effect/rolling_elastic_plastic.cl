@@ -61,10 +61,11 @@ INLINE void rolling_moment(const contact *c, rolling_state *s, response *out)
     vec3 returned = scale(-compliance, add_scaled(out->rolling, m.damping, rate));
     s->spring = v3(yields ? returned.x : spring.x, yields ? returned.y : spring.y, yields ? returned.z : spring.z);
     s->spring = v3(live ? s->spring.x : R(0.0), live ? s->spring.y : R(0.0), live ? s->spring.z : R(0.0));
+    /* in another order than those of the tangential spring: the compiler pairs up what is the same, and then no longer vectorises over records */
     spring_step step = {m.stiffness,
-                        R(0.5) * m.stiffness * dot3(before, before),
-                        R(0.5) * m.stiffness * dot3(s->spring, s->spring),
-                        R(0.5) * compliance * limit * limit,
+                        dot3(scale(R(0.5) * m.stiffness, before), before),
+                        dot3(scale(R(0.5) * m.stiffness, s->spring), s->spring),
+                        limit * compliance * (R(0.5) * limit),
                         R(1.0),
                         yields,
                         scale(-m.damping, rate)};

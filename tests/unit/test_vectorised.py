@@ -72,9 +72,6 @@ class Vectorised(unittest.TestCase):
     def test_contact(self):
         self.check(HERTZ, PLANE)
 
-    def test_rolling(self):
-        self.check(MINDLIN + ROLLING, PLANE)
-
     def test_conduction_alone(self):
         self.check(HERTZ + CONDUCTION, PLANE)
 
@@ -89,6 +86,9 @@ class Vectorised(unittest.TestCase):
 
     def test_conduction_and_hot_plane(self):
         self.check(MINDLIN + ROLLING + CONDUCTION, HOT)
+
+    def test_rolling_and_what_is_dissipated(self):
+        self.check(MINDLIN + ROLLING + CONDUCTION + ", {slot: dissipation_heat, law: fraction}", PLANE)
 
     def test_linear_periodic(self):
         self.check(LINEAR, PERIODIC)
