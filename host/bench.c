@@ -18,7 +18,7 @@
 typedef struct bench_figures {
     int64_t particles, steps, rebuilds;
     double wall_s, rebuild_s, particle_steps_per_s;
-    double bytes_per_particle, contacts_per_particle, records_per_particle;
+    double bytes_per_particle, contacts_per_particle, records_per_particle, bonded; /* bonded: share of the contacts */
     double pair_s, particle_s; /* device time of the two stages in a step */
     double kinetic_j;
     int launches, chunk_records, force_records;
@@ -155,6 +155,9 @@ static status measure(simulation *sim, const bench_options *options, bench_figur
     out->chunk_records = sim->plan.chunk_records;
     out->force_records = sim->plan.force_records;
     out->bytes_per_particle = (double)sim->bytes / (double)sim->count;
+    bond_sums bonds;
+    TRY(bonds_count(sim, &bonds, why));
+    out->bonded = contacts.contacts > 0 ? (double)bonds.alive / (double)contacts.contacts : 0.0;
     out->contacts_per_particle = 2.0 * (double)contacts.pairs / (double)sim->count;
     out->records_per_particle = (double)sim->table.record_count / (double)sim->count;
     device_describe(&sim->device->info, out->device, sizeof out->device);
@@ -195,6 +198,8 @@ static void print_figures(const bench_figures *f, const bench_options *options)
         printf("  %-28s%d\n", "launches a step", f->launches);
     printf("  %-28s%.4g a grain\n", "device memory, bytes", f->bytes_per_particle);
     printf("  %-28s%.3f a grain, %.3f records in the table\n", "contacts with others", f->contacts_per_particle, f->records_per_particle);
+    if (options->effects & BED_BONDS)
+        printf("  %-28s%.3g %%\n", "of all contacts are bonded", 100.0 * f->bonded);
     printf("  %-28s%.3g J\n", "kinetic energy", f->kinetic_j);
 }
 
@@ -202,13 +207,13 @@ static status write_json(const bench_figures *f, const bench_options *options, f
 {
     char effects[128];
     bench_name_effects(options->effects, effects, sizeof effects);
-    json_t *root = json_pack("{s:s, s:s, s:I, s:I, s:f, s:b, s:s, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:i, s:i, s:i}", "device", f->device, "precision", options->mixed ? "mixed" : "double",
+    json_t *root = json_pack("{s:s, s:s, s:I, s:I, s:f, s:b, s:s, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:i, s:i, s:i, s:f}", "device", f->device, "precision", options->mixed ? "mixed" : "double",
                              "particles", (json_int_t)f->particles, "steps", (json_int_t)f->steps, "step_s", BENCH_STEP_S, "rolling",
                              (int)(options->effects & BED_ROLLING), "effects", effects, "wall_s", f->wall_s, "particle_steps_per_s", f->particle_steps_per_s, "bytes_per_particle",
                              f->bytes_per_particle, "rebuilds", (json_int_t)f->rebuilds, "rebuild_s", f->rebuild_s, "pair_stage_s",
                              f->pair_s, "particle_stage_s", f->particle_s, "contacts_per_particle", f->contacts_per_particle,
                              "records_per_particle", f->records_per_particle, "kinetic_energy_j", f->kinetic_j, "launches_per_step", f->launches, "chunk_records",
-                             f->chunk_records, "force_records", f->force_records);
+                             f->chunk_records, "force_records", f->force_records, "bonded_share", f->bonded);
     FILE *file = root ? fopen(options->json_path, "w") : NULL;
     bool whole = file && json_dumpf(root, file, JSON_INDENT(2)) == 0 && fputc('\n', file) != EOF;
     if (file && fclose(file) != 0)

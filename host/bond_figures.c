@@ -238,15 +238,12 @@ static status check_class(const contact_class *class, const size_range *size, fa
     return STATUS_OK;
 }
 
-/* Cohesion by JKR's contact radius is made for Hertz's spring, and a bond would have to share the normal force with it. */
+/* Cohesion by JKR's contact radius is made for Hertz's spring. */
 static status check_cohesion(const scene *s, failure *why)
 {
     const effect *cohesion = scene_effect(s, -1, SLOT_COHESION), *normal = scene_effect(s, -1, SLOT_NORMAL);
     if (!cohesion)
         return STATUS_OK;
-    if (scene_effect(s, -1, SLOT_BOND))
-        return fail(why, STATUS_BAD_INPUT, "%s:%d:%d: effects[cohesion]: a scene has bonds or cohesion, not both: each takes the normal force over; keep one",
-                    s->path, cohesion->at.line, cohesion->at.column);
     if (cohesion->law == &law_jkr && scene_effect(s, -1, SLOT_MODULUS))
         return fail(why, STATUS_BAD_INPUT, "%s:%d:%d: effects[cohesion]: `jkr` has constant moduli, and the scene softens them; take `sjkr` or `dmt`",
                     s->path, cohesion->at.line, cohesion->at.column);

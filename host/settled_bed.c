@@ -27,6 +27,7 @@
 #define SETTLE_MAX_S   3.0
 #define SETTLE_CHECK   500  /* steps between looks at the energy */
 #define SETTLE_DAMPING 20.0 /* 1/s */
+#define BONDING_STRAIN 0.037 /* of 100,000 grains */
 
 /* Sum of volumes of so many grains on average: <r^3> of the uniform distribution. */
 static double solid_volume(double particles)
@@ -63,7 +64,7 @@ bed_layout settled_bed_layout(int64_t particles)
 
 /* ---- the scene ---- */
 
-const char bed_effect_words[] = "rolling|conduction|convection|radiation";
+const char bed_effect_words[] = "rolling|conduction|convection|radiation|bonds";
 
 static void print_walls(FILE *out, double x, double y, bool hot)
 {
@@ -72,6 +73,13 @@ static void print_walls(FILE *out, double x, double y, bool hot)
                  "  - {name: south, shape: plane, point_m: [0, 0, 0], normal: [0, 1, 0]}\n");
     fprintf(out, "  - {name: east, shape: plane, point_m: [%.17g, 0, 0], normal: [-1, 0, 0]}\n", x);
     fprintf(out, "  - {name: north, shape: plane, point_m: [0, %.17g, 0], normal: [0, -1, 0]}\n", y);
+}
+
+/* Adhesion with which half of the contacts of the bed are deeper than the critical overlap, and bond: overlaps go as the load to the power 2/3, and
+ * the load as the height. */
+static double bonding_strain(int64_t particles)
+{
+    return BONDING_STRAIN * pow(1e-5 * (double)particles, 2.0 / 9.0);
 }
 
 static void print_scene(FILE *out, int64_t particles, double x, double y, double height, unsigned effects, bool settling, bool slippery)
@@ -87,13 +95,15 @@ static void print_scene(FILE *out, int64_t particles, double x, double y, double
         fprintf(out, "  - {slot: convection, law: newton, coefficient_w_m2k: 50}\n");
     if (effects & BED_RADIATION)
         fprintf(out, "  - {slot: radiation, law: stefan_boltzmann}\n");
+    if (effects & BED_BONDS)
+        fprintf(out, "  - {slot: bond, law: adhesion, criterion: at_time}\n");
     if (settling)
         fprintf(out, "  - {slot: body, law: viscous_damping, coefficient: %g}\n", SETTLE_DAMPING);
     if (effects & (BED_CONVECTION | BED_RADIATION))
         fprintf(out, "environment: {temperature_k: 350}\n");
     fprintf(out, "materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3, conductivity_w_mk: 1,\n"
                  "             specific_heat_j_kgk: 800, emissivity: 0.9}]\ninteractions:\n");
-    fprintf(out, "  - {between: default, restitution: 0.5, friction_static: 0.5, rolling_friction: 0.01}\n");
+    fprintf(out, "  - {between: default, restitution: 0.5, friction_static: 0.5, rolling_friction: 0.01, bond_equilibrium_strain: %.6g,\n     bond_damping_ratio: 0.3}\n", bonding_strain(particles));
     for (int s = 0; s < 4 && slippery; s++)
         fprintf(out, "  - {between: [glass, %s], friction_static: 0}\n", sides[s]);
     fprintf(out, "particles:\n  - {name: bed, material: glass, generator: random, count: %lld, temperature_k: 300,\n", (long long)particles);

@@ -12,6 +12,7 @@
 #define BED_CONDUCTION 2u /* with a hot floor */
 #define BED_CONVECTION 4u
 #define BED_RADIATION  8u
+#define BED_BONDS      16u /* adhesion, of about half of the contacts */
 /* Their words in that order, "rolling|conduction|...". */
 extern const char bed_effect_words[];
 

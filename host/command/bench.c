@@ -45,7 +45,7 @@ static void read_effects_option(const struct argp_state *state, const char *argu
         snprintf(one, sizeof one, "%.*s", (int)(length < sizeof one ? length : sizeof one - 1), word);
         int index = words_find(bed_effect_words, one);
         if (index < 0)
-            option_refuse(state, "--effects: there is no effect `%s`; this version has rolling, conduction, convection and radiation", one);
+            option_refuse(state, "--effects: there is no effect `%s`; this version has rolling, conduction, convection, radiation and bonds", one);
         *effects |= 1u << index;
         word += length + (word[length] == ',');
     }
@@ -113,7 +113,7 @@ static const struct argp_option bench_option[] = {
     {"steps", 'S', "STEPS", 0, "Steps that are timed, after 200 of warm-up", 0},
     {"precision", KEY_PRECISION, "P", 0, "auto, double or mixed", 0},
     {"rolling", KEY_ROLLING, NULL, 0, "With rolling resistance", 0},
-    {"effects", KEY_EFFECTS, "A,B,...", 0, "With these on top of contact and friction, of rolling, conduction, convection, radiation", 0},
+    {"effects", KEY_EFFECTS, "A,B,...", 0, "With these on top of contact and friction, of rolling, conduction, convection, radiation, bonds", 0},
     {"export", KEY_EXPORT, "FILE.csv", 0, "Write the bed as it is before the warm-up", 0},
     {"json", KEY_JSON, "FILE.json", 0, "Write the figures as JSON", 0},
     {"csv", KEY_CSV, "FILE.csv", 0, "Write them as CSV (effects, kernels)", 0},

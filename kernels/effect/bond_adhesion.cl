@@ -46,6 +46,11 @@ INLINE real bond_lives(real count)
     return size - R(2.0) * floor(R(0.5) * size);
 }
 
+INLINE real bond_holds(const bond_state *s)
+{
+    return bond_lives(s->count);
+}
+
 INLINE real adhesion_whole(real x, int n)
 {
     real square = x * x, result = (n & 1) != 0 ? x : R(1.0);

@@ -20,6 +20,11 @@ INLINE real bond_lives(real count)
     return size - R(2.0) * floor(R(0.5) * size);
 }
 
+INLINE real bond_holds(const bond_state *s)
+{
+    return bond_lives(s->count);
+}
+
 INLINE bool parallel_at_wall(const contact *c)
 {
     return !(c->arm_j > R(0.0));

@@ -7,6 +7,13 @@ typedef struct bond_state {
     int unused;
 } bond_state;
 
+/* 1 while the contact is bonded. */
+INLINE real bond_holds(const bond_state *s)
+{
+    (void)s;
+    return R(0.0);
+}
+
 /* Before the other laws: what a bond changes of the geometry of bodies that stand apart. */
 INLINE void bond_geometry(contact *c, const bond_state *s)
 {

@@ -143,13 +143,25 @@ INLINE void normal_total(const contact *c, response *out)
     out->bearing = out->normal;
 }
 
+/* A bond is all the adhesion of its contact: cohesion is silent while it lives, and follows its own history meanwhile. */
+INLINE void cohesion_unless_bonded(const contact *c, contact_state *s, response *out)
+{
+    bool bonded = bond_holds(&s->bond) > R(0.5);
+    real normal = out->normal, bearing = out->bearing, spring = out->spring, damper = out->damper;
+    cohesion_force(c, &s->cohesion, out);
+    out->normal = bonded ? normal : out->normal;
+    out->bearing = bonded ? bearing : out->bearing;
+    out->spring = bonded ? spring : out->spring;
+    out->damper = bonded ? damper : out->damper;
+}
+
 /* The slots in their order. */
 INLINE void contact_laws(contact *c, contact_state *s, response *out)
 {
     bond_geometry(c, &s->bond);
     normal_total(c, out);
     bond_normal(c, &s->bond, out);
-    cohesion_force(c, &s->cohesion, out);
+    cohesion_unless_bonded(c, s, out);
     tangential_force(c, &s->slip, &s->tangential, out);
     rolling_moment(c, &s->rolling, out);
     out->lost = dissipation_of(c, out, &s->dissipation);

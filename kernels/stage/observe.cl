@@ -64,11 +64,12 @@ INLINE void observe_record(const clast_launch *launch, int k, bool wall PAIR_DEC
     bond_geometry(&c, &s.bond);
     normal_total(&c, &out);
     bond_normal(&c, &s.bond, &out);
-    cohesion_force(&c, &s.cohesion, &out);
+    cohesion_unless_bonded(&c, &s, &out);
     real smaller = wall || c.radius_i < c.radius_j ? c.radius_i : c.radius_j;
     real springs = normal_energy(&c) + tangential_energy(&c, &s.slip, &s.tangential, out.bearing) + rolling_energy(&c, &s.rolling, out.bearing);
     AT(force, launch->record_stride, 0, k) = c.overlap / smaller;
-    AT(force, launch->record_stride, 1, k) = (c.overlap > R(0.0) ? springs : R(0.0)) + bond_energy(&c, &s.bond) + cohesion_energy(&c, &s.cohesion);
+    real cohered = bond_holds(&s.bond) > R(0.5) ? R(0.0) : cohesion_energy(&c, &s.cohesion);
+    AT(force, launch->record_stride, 1, k) = (c.overlap > R(0.0) ? springs : R(0.0)) + bond_energy(&c, &s.bond) + cohered;
     AT(force, launch->record_stride, 2, k) = c.overlap;
 }
 
@@ -98,7 +99,9 @@ __kernel void limit_records(const clast_launch launch PAIR_DECLARE)
     BOND_LOAD(&launch, k, bond);
     COHESION_LOAD(&launch, k, cohesion);
     bond_modes(&c, &bond, &n, &t, &r);
+    const mode without = n;
     cohesion_mode(&c, &cohesion, &n);
+    n = bond_holds(&bond) > R(0.5) ? without : n;
     LIMIT_STORE(&launch, k, twice, c.n, n, t, r);
 }
 
@@ -259,8 +262,11 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
     expected_at(&c, pulled_high > rest_high ? pulled_high : rest_high);
     real inverse = R(1.0) / c.mass_eff;
     mode a = normal_mode(&c), t = tangential_mode(&c), r = rolling_mode(&c);
+    mode cohering = a; /* with cohesion or with a bond: the stiffer of the two may come */
+    cohesion_mode(&c, &cohesion, &cohering);
     bond_modes(&c, &bond, &a, &t, &r);
-    cohesion_mode(&c, &cohesion, &a);
+    a.stiffness = a.stiffness > cohering.stiffness ? a.stiffness : cohering.stiffness;
+    a.damping = a.damping > cohering.damping ? a.damping : cohering.damping;
     real spin_i = R(1.0) / (R(0.4) * c.mass_i * c.radius_i * c.radius_i);
     real spin_both = wall ? spin_i : spin_i + R(1.0) / (R(0.4) * c.mass_j * c.radius_j * c.radius_j);
     real turning = limit_step(R(3.5) * t.stiffness * inverse + spin_both * r.stiffness, R(3.5) * t.damping * inverse + spin_both * r.damping);

@@ -102,12 +102,47 @@ static void test_energy(void **state)
     }
 }
 
+/* Bonds and cohesion in one scene: a bonded grain hangs by the beam alone, W/k below where it was made, though the neck of JKR would reach there;
+ * its neighbour without a bond hangs by cohesion; and one whose bond has broken, too. */
+static void test_beside_bonds(void **state)
+{
+    (void)state;
+    double weight = 0.5 * 1.5 * PI * work * R_PAIR, young_bond = 3.75e5, stiffness = young_bond * PI * radius * radius / (2.0 * radius);
+    text t = {0};
+    put(&t, "gravity_m_s2: [%.17g, 0, 0]\neffects: [{slot: normal, law: hertz}, {slot: cohesion, law: jkr}, {slot: bond, law: parallel, criterion: "
+            "at_time}]\n", weight / sphere_mass(density, radius));
+    static const char *const material[] = {"strong", "loose", "weak"};
+    put(&t, "materials:\n");
+    for (int n = 0; n < 3; n++)
+        put(&t, "  - {name: %s, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: 0.3}\n", material[n], density, young);
+    put(&t, "interactions: [{between: default, normal_damping_ratio: 1, work_of_adhesion_j_m2: %g, bond_youngs_modulus_pa: %g, bond_damping_ratio: 1}, "
+            "{between: [loose, loose], bond_youngs_modulus_pa: 0}, {between: [weak, weak], bond_tensile_strength_pa: %.17g}]\nparticles:\n", work, young_bond, 0.5 * weight / (PI * radius * radius));
+    for (int n = 0; n < 3; n++) {
+        put(&t, "  - {name: held%d, material: %s, generator: list, motion: fixed, items: [{radius_m: %g, position_m: [0, %g, 0]}]}\n", n, material[n],
+            radius, n * 1e-3);
+        put(&t, "  - {name: hung%d, material: %s, generator: list, items: [{radius_m: %g, position_m: [%.17g, %g, 0]}]}\n", n, material[n], radius,
+            2.0 * radius - 1e-8, n * 1e-3);
+    }
+    physics_case c = case_open(&t);
+    case_run(&c, 20000, 2e-7);
+    bond_sums sums;
+    MUST(bonds_count(c.sim, &sums, why));
+    assert_int_equal(sums.made, 2);
+    assert_int_equal(sums.alive, 1);
+    RELATIVE(case_get(&c, "position", 1, 0) - 2.0 * radius, weight / stiffness - 1e-8, 1e-4);
+    double free_gap = case_get(&c, "position", 3, 0) - 2.0 * radius, broken_gap = case_get(&c, "position", 5, 0) - 2.0 * radius;
+    assert_true(free_gap < 0.5 * weight / stiffness && free_gap > -1e-5);
+    NEAR(broken_gap, free_gap, 1e-9);
+    case_close(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pull_off),
         cmocka_unit_test(test_hysteresis),
         cmocka_unit_test(test_energy),
+        cmocka_unit_test(test_beside_bonds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
