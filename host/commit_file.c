@@ -256,9 +256,13 @@ static herr_t driver_flush(H5FD_t *base, hid_t transfer, hbool_t closing)
         qsort(file->waiting, (size_t)file->count, sizeof *file->waiting, compare);
     if (file->to_disk && fsync(file->descriptor) != 0)
         file->error = errno;
+    /* From the first of these on the file may say that the new tail belongs to it: should one of them fail, the tail must stay. */
+    off_t before = file->committed;
+    if (!file->error && (off_t)handle->end_allocated > file->committed)
+        file->committed = (off_t)handle->end_allocated;
     for (int k = 0; k < file->count && !file->error; k++)
         put(file, file->waiting[k].at, file->waiting[k].bytes, file->waiting[k].size);
-    if (!file->error && (off_t)handle->end_allocated < file->committed)
+    if (!file->error && (off_t)handle->end_allocated < before)
         if (ftruncate(file->descriptor, (off_t)handle->end_allocated) != 0)
             file->error = errno;
     if (!file->error && file->to_disk && fsync(file->descriptor) != 0)

@@ -144,7 +144,7 @@ static status store_default(reader *r, const parameter *row, void *target)
     void *store = (char *)target + row->offset;
     const char *fallback = row->fallback && row->word && strcmp(row->fallback, row->word) == 0 ? NULL : row->fallback;
     double number = fallback && row->type == PARAMETER_NUMBER ? strtod(fallback, NULL) : NAN;
-    int64_t integer = fallback ? strtoll(fallback, NULL, 10) : (int64_t)row->absent;
+    int64_t integer = fallback ? strtoll(fallback, NULL, 10) : row->type == PARAMETER_INTEGER ? (int64_t)row->absent : 0;
     switch (row->type) {
     case PARAMETER_NUMBER:
         memcpy(store, &number, sizeof number);
