@@ -147,7 +147,7 @@ static cl_int read_info(cl_platform_id platform, cl_device_id id, device_info *o
 {
     cl_device_type type = 0;
     cl_ulong memory = 0, buffer = 0;
-    cl_uint units = 0;
+    cl_uint units = 0, lanes = 1;
     size_t argument = 0;
     cl_device_fp_config fp64 = 0;
     cl_int code = clGetDeviceInfo(id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
@@ -164,6 +164,8 @@ static cl_int read_info(cl_platform_id platform, cl_device_id id, device_info *o
     /* Old drivers answer with an error where they have no fp64. */
     if (clGetDeviceInfo(id, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof fp64, &fp64, NULL) != CL_SUCCESS)
         fp64 = 0;
+    if (clGetDeviceInfo(id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof lanes, &lanes, NULL) != CL_SUCCESS || lanes < 1)
+        lanes = 1;
     *out = (device_info){.platform = platform,
                          .id = id,
                          .cpu = (type & CL_DEVICE_TYPE_CPU) != 0,
@@ -173,6 +175,7 @@ static cl_int read_info(cl_platform_id platform, cl_device_id id, device_info *o
                          .buffer_bytes = buffer,
                          .usable_bytes = memory,
                          .compute_units = units,
+                         .float_lanes = lanes,
                          .argument_bytes = argument};
     /* pocl reports only part of the host's memory, and allocates more. */
     uint64_t available = out->cpu ? available_bytes() : 0;

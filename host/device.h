@@ -15,6 +15,7 @@ typedef struct device_info {
     uint64_t buffer_bytes;        /* largest single buffer, as reported */
     uint64_t usable_bytes;        /* what a plan is held against: on a CPU device the host's available memory */
     uint32_t compute_units;
+    uint32_t float_lanes; /* floats in its widest register; 1 where it does not say */
     uint64_t argument_bytes;
 } device_info;
 

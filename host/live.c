@@ -235,7 +235,7 @@ bool live_keeps_half_steps(const live_laws *live)
 
 int live_files(const live_laws *live, const char **files, int max)
 {
-    static const char *const stages[] = {"stage/contact.cl", "stage/pair.cl", "stage/particle.cl", "stage/observe.cl"};
+    static const char *const stages[] = {"stage/contact.cl", "stage/pair.cl", "stage/particle.cl", NULL, "stage/observe.cl"};
     int count = 0;
     for (slot_id slot = 0; slot < SLOT_COUNT; slot++) {
         const law *l = live->law[slot];
@@ -245,7 +245,7 @@ int live_files(const live_laws *live, const char **files, int max)
             files[count++] = l->more_files[f];
     }
     for (size_t s = 0; s < sizeof stages / sizeof *stages && count < max; s++)
-        files[count++] = stages[s];
+        files[count++] = stages[s] ? stages[s] : live->blocks ? "stage/by_blocks.cl" : "stage/by_items.cl";
     if (live_keeps_half_steps(live) && count < max)
         files[count++] = "stage/synchronise.cl";
     if (live->servo && count < max)

@@ -10,6 +10,7 @@ typedef struct live_laws {
     const double *option[SLOT_COUNT];
     bool frozen; /* nothing moves: heat advances by methods of its own */
     bool servo; /* some wall keeps a force, in some stage */
+    bool blocks; /* a work-item of the two stages takes a block instead of one record or grain: the form for CPUs */
 } live_laws;
 
 /* The union over all stages, which decides what is allocated. */

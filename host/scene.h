@@ -258,10 +258,14 @@ typedef struct output_spec {
 /* Two launches a step, or a loop over steps in one work-group. */
 typedef enum step_form { STEP_AUTO, STEP_TWO_KERNELS, STEP_ONE_GROUP } step_form;
 
+/* A work-item of the two stages takes one record or grain, or a block of them. */
+typedef enum kernel_form { KERNEL_AUTO, KERNEL_ITEMS, KERNEL_BLOCKS } kernel_form;
+
 typedef struct table_spec {
     double skin_m;         /* NAN: auto */
     int64_t batch_steps;   /* 0: auto */
     step_form step_form;
+    kernel_form kernel_form;
     int64_t chunk_records; /* 0: auto */
 } table_spec;
 

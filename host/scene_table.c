@@ -422,6 +422,9 @@ static const parameter table_rows[] = {
      .doc = "steps enqueued before the host looks"},
     {.key = "step_form", .type = PARAMETER_CHOICE, .choices = "auto|two_kernels|one_group", .fallback = "auto", AT(table_spec, step_form),
      .doc = "two kernels a step, or one work-group that loops over steps, for small beds; `auto` goes by size"},
+    {.key = "kernel_form", .type = PARAMETER_CHOICE, .choices = "auto|items|blocks", .fallback = "auto", AT(table_spec, kernel_form),
+     .doc = "a work-item takes one contact or grain, as GPUs want it, or a block of them, as CPUs do; `auto` goes by the device, and results are"
+            " the same"},
     {.key = "chunk_records", .type = PARAMETER_INTEGER, .low = 1, .high = 1e9, .word = "auto",
      .fallback = "auto", AT(table_spec, chunk_records),
      .doc = "records of pairs that go through a step together, so that their forces stay in the cache (rounded up to a power of two; as many as"

@@ -225,6 +225,7 @@ status simulation_create(const scene *scene, const bed *bed, device *device, con
     sim->stride = (bed->count + sim->block - 1) / sim->block * sim->block;
     sim->group_held = calloc((size_t)scene->group_count + 1, sizeof *sim->group_held);
     live_laws_of(scene, bed, &sim->all);
+    sim->all.blocks = scene->table.kernel_form == KERNEL_BLOCKS || (scene->table.kernel_form == KERNEL_AUTO && device->info.cpu);
     sim->mixed = sim->all.law[SLOT_PRECISION] != NULL;
     measure_bed(sim, bed);
     choose_origin(sim);

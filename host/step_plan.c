@@ -231,7 +231,8 @@ static status enqueue_piece(const simulation *sim, cl_command_queue queue, const
 {
     const char *name = piece->pairs ? "pair_stage" : "particle_stage";
     cl_kernel kernel = launch_kernel(sim, name);
-    size_t local = sim->block, items = (size_t)piece->count * local;
+    size_t local = sim->live.blocks ? 1 : sim->block, share = sim->live.blocks ? (piece->pairs ? 1 : 2) : sim->block;
+    size_t items = (size_t)piece->count * share;
     cl_event watched;
     bool watch = sim->watch && !event;
     launch->first_group = piece->first;

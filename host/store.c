@@ -13,10 +13,16 @@ const field field_mass = {"mass", PER_PARTICLE, FIELD_REAL, 1, FIELD_STATE, "kg"
 const field field_id = {"id", PER_PARTICLE, FIELD_INT, 1, FIELD_STATE, "", "permanent id"};
 const field field_force = {"force", PER_RECORD, FIELD_REAL, 3, FIELD_RESULT, "N", "force of a contact on its owner"};
 
+/* Four numbers are loaded where three are wanted (kernels/stage/by_blocks.cl): one more behind the last grain's. */
+static uint64_t buffer_bytes(uint64_t bytes)
+{
+    return (bytes > 64 ? bytes : 64) + 8;
+}
+
 status store_buffer(simulation *sim, cl_mem *mem, uint64_t bytes, const char *what, failure *why)
 {
     const device_info *info = &sim->device->info;
-    bytes = bytes > 64 ? bytes : 64;
+    bytes = buffer_bytes(bytes);
     if (sim->bytes + bytes > info->usable_bytes)
         return fail(why, STATUS_DEVICE, "%s does not hold this scene: %s needs %.3f GB on top of %.3f GB, %.3f GB can be used; use fewer grains or a larger device",
                     info->name, what, 1e-9 * (double)bytes, 1e-9 * (double)sim->bytes, 1e-9 * (double)info->usable_bytes);
@@ -38,7 +44,7 @@ void store_release(simulation *sim, cl_mem *mem, uint64_t bytes)
 {
     if (*mem) {
         clReleaseMemObject(*mem);
-        sim->bytes -= bytes > 64 ? bytes : 64;
+        sim->bytes -= buffer_bytes(bytes);
     }
     *mem = NULL;
 }

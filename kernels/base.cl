@@ -1,10 +1,14 @@
 /* Scalars and vectors; what is `precise` and `exact` is defined in precision/. A struct of three scalars vectorises where float3/double3 do not; functions are inlined always, since one call
  * ends vectorisation. */
+/* Loops that may become vector code need not. */
+#pragma clang diagnostic ignored "-Wpass-failed"
 #ifndef REAL_IS_FLOAT
 typedef clast_f64 real;
+typedef double4 real4;
 #define R(x) ((real)(x))
 #else
 typedef float real;
+typedef float4 real4;
 #define R(x) ((real)(x##f))
 #endif
 
@@ -88,9 +92,9 @@ INLINE real cube_root(real x)
 #define PRECISE_GRAIN3(field, i) PRECISE3((field) + 3 * (size_t)(i))
 #define SET_GRAIN3(field, i, v)                              \
     do {                                                     \
-        (field)[3 * (size_t)(i)] = precise_store((v).x);     \
-        (field)[3 * (size_t)(i) + 1] = precise_store((v).y); \
-        (field)[3 * (size_t)(i) + 2] = precise_store((v).z); \
+        STORE_PRECISE((field)[3 * (size_t)(i)], (v).x);      \
+        STORE_PRECISE((field)[3 * (size_t)(i) + 1], (v).y);  \
+        STORE_PRECISE((field)[3 * (size_t)(i) + 2], (v).z);  \
     } while (0)
 #define GRAIN_RADIUS(i) number(radius[i])
 /* Fields of records are read one record after the other, a component each: component c of a field of `stride` elements a component. */

@@ -1,6 +1,14 @@
 /* integrator: semi-implicit Euler, velocity first (TM sec. 4). Velocity and spin are those of the step's end. */
 #define INTEGRATOR_PAIR_FIELDS(READ, WRITE)
 #define INTEGRATOR_PAST_VELOCITY(i, v) (v)
+#define INTEGRATOR_ROWS 0
+#define INTEGRATOR_ROWS_FILL(i, to)
+#define INTEGRATOR_EXACT_ROWS_FILL(i, to)
+#define INTEGRATOR_PRECISE_VELOCITY_OF_ROWS(rows, n, lane, v) (v)
+#define INTEGRATOR_PRECISE_SPIN_OF_ROWS(rows, n, lane, w) (w)
+#define INTEGRATOR_VELOCITY_OF_ROWS(rows, n, lane, v) (v)
+#define INTEGRATOR_SPIN_OF_ROWS(rows, n, lane, w) (w)
+#define INTEGRATOR_ASK_FOR(i)
 #define INTEGRATOR_PAST_SPIN(i, w) (w)
 #define INTEGRATOR_ELAPSED(launch) (launch)->dt
 #define INTEGRATOR_PARTICLE_FIELDS(READ, WRITE)

@@ -4,10 +4,17 @@
 #define ROTATION_OBSERVE_FIELDS(READ, WRITE)
 #define ROTATION_LIMIT_FIELDS(READ, WRITE)
 #define ROTATION_LOAD(launch, i) v3(R(0.0), R(0.0), R(0.0))
+#define ROTATION_ROWS 0
+#define ROTATION_ROWS_FILL(i, to)
+#define ROTATION_OF_ROWS(rows, n, lane) v3(R(0.0), R(0.0), R(0.0))
+#define ROTATION_EXACT_ROWS_FILL(i, to)
+#define ROTATION_PRECISE_OF_ROWS(rows, n, lane) precise3_from(v3(R(0.0), R(0.0), R(0.0)))
+#define ROTATION_TO_ROWS(rows, n, lane, t) (void)(t)
+#define ROTATION_ASK_FOR(i)
 #define ROTATION_PRECISE(launch, i) precise3_from(v3(R(0.0), R(0.0), R(0.0)))
 #define ROTATION_STORE(launch, i, w) (void)(w)
 #define ROTATION_STORE_TORQUE(launch, k, owner_torque, other_torque) (void)(owner_torque), (void)(other_torque)
-#define ROTATION_GATHER(launch, k, sign) v3(R(0.0), R(0.0), R(0.0))
+#define ROTATION_GATHER(launch, k, side) v3(R(0.0), R(0.0), R(0.0))
 /* Without torques there is no room for the normal of a record: stiffnesses of a grain add up as if all its contacts stood in one line,
  * which is on the safe side. */
 #define LIMIT_STORE(launch, k, twice, direction, n, t, r)                     \

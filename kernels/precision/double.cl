@@ -21,6 +21,8 @@ INLINE exact precise_store(precise a)
     return a;
 }
 
+#define STORE_PRECISE(place, a) (place) = (a)
+
 INLINE precise precise_from(real a)
 {
     return a;
@@ -170,4 +172,19 @@ INLINE real sphere_overlap(apart3 d, real distance, precise radius_i, precise ra
 INLINE bool is_number(real a)
 {
     return ((as_ulong(a) >> 52) & 0x7ff) != 0x7ff;
+}
+
+/* Rows of the stages by blocks (stage/by_blocks.cl): four stored numbers, given by their bits, to a row. */
+#define EXACT_REALS 1
+#define ROW_PRECISE(rows, n, lane) ROW_NUMBER(rows, n, lane)
+
+INLINE void row_rounded(ulong4 stored, real *to)
+{
+    vstore4(as_double4(stored), 0, to);
+}
+
+INLINE void row_exact(ulong4 stored, real *to, int stride)
+{
+    (void)stride;
+    vstore4(as_double4(stored), 0, to);
 }

@@ -40,6 +40,9 @@ INLINE exact precise_store(precise a)
     return r;
 }
 
+/* The same without the struct on its way, where the compiler is to make vector code. */
+#define STORE_PRECISE(place, a) (place).high = (a).hi, (place).low = (a).lo
+
 INLINE precise precise_from(real a)
 {
     precise r;
@@ -280,4 +283,19 @@ INLINE real sphere_overlap(apart3 d, real distance, precise radius_i, precise ra
 INLINE bool is_number(real a)
 {
     return ((as_uint(a) >> 23) & 0xff) != 0xff;
+}
+
+/* Rows of the stages by blocks (stage/by_blocks.cl): four stored numbers, given by their bits, to a row of high and one of low parts. */
+#define EXACT_REALS 2
+#define ROW_PRECISE(rows, n, lane) precise_of(ROW_NUMBER(rows, n, lane), ROW_NUMBER(rows, (n) + 1, lane))
+
+INLINE void row_rounded(ulong4 stored, real *to)
+{
+    vstore4(as_float8(stored).even, 0, to);
+}
+
+INLINE void row_exact(ulong4 stored, real *to, int stride)
+{
+    vstore4(as_float8(stored).even, 0, to);
+    vstore4(as_float8(stored).odd, 0, to + stride);
 }

@@ -26,21 +26,37 @@ INLINE void contact_complete(contact *c)
     c->radius_inverse = inverse * (touches ? a : R(1.0));
 }
 
-INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR_DECLARE)
+/* What every contact reads of a grain. */
+typedef struct sphere {
+    precise3 position;
+    precise radius;
+    vec3 velocity, past_velocity, spin, past_spin;
+    real mass;
+} sphere;
+
+INLINE void sphere_load(const clast_launch *launch, int i, sphere *s PAIR_DECLARE)
 {
-    int i = owner[k], j = other[k];
-    apart3 way = periodic_nearest(launch, apart_of(PRECISE_GRAIN3(position, j), PRECISE_GRAIN3(position, i)));
-    vec3 d = apart_vector(way);
-    vec3 v_i = GRAIN3(velocity, i), v_j = GRAIN3(velocity, j), u = sub(v_i, v_j);
-    vec3 past = sub(INTEGRATOR_PAST_VELOCITY(i, v_i), INTEGRATOR_PAST_VELOCITY(j, v_j));
+    s->position = PRECISE_GRAIN3(position, i);
+    s->radius = precise_load(radius[i]);
+    s->velocity = GRAIN3(velocity, i);
+    s->past_velocity = INTEGRATOR_PAST_VELOCITY(i, s->velocity);
+    s->spin = ROTATION_LOAD(launch, i);
+    s->past_spin = INTEGRATOR_PAST_SPIN(i, s->spin);
+    s->mass = mass[i];
+}
+
+INLINE void contact_of_spheres(const clast_launch *launch, int i, int j, const sphere *s_i, const sphere *s_j, contact *c PAIR_DECLARE)
+{
+    apart3 way = periodic_nearest(launch, apart_of(s_j->position, s_i->position));
+    vec3 d = apart_vector(way), u = sub(s_i->velocity, s_j->velocity), past = sub(s_i->past_velocity, s_j->past_velocity);
     real d2 = dot3(d, d);
-    precise radius_i = precise_load(radius[i]), radius_j = precise_load(radius[j]);
+    precise radius_i = s_i->radius, radius_j = s_j->radius;
     c->radius_i = rounded(radius_i);
     c->radius_j = rounded(radius_j);
-    c->spin_i = ROTATION_LOAD(launch, i);
-    c->spin_j = ROTATION_LOAD(launch, j);
-    c->past_spin_i = INTEGRATOR_PAST_SPIN(i, c->spin_i);
-    c->past_spin_j = INTEGRATOR_PAST_SPIN(j, c->spin_j);
+    c->spin_i = s_i->spin;
+    c->spin_j = s_j->spin;
+    c->past_spin_i = s_i->past_spin;
+    c->past_spin_j = s_j->past_spin;
     c->modulus_i = MODULUS_OF(i);
     c->modulus_j = MODULUS_OF(j);
     c->growth_i = GROWTH_OF(i);
@@ -51,8 +67,8 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     c->ahead = sub(DISSIPATION_AHEAD(i), DISSIPATION_AHEAD(j));
     c->ahead_spin_i = DISSIPATION_AHEAD_SPIN(i);
     c->ahead_spin_j = DISSIPATION_AHEAD_SPIN(j);
-    c->mass_i = motion_mass(MOTION_GRAIN(i), mass[i]);
-    c->mass_j = motion_mass(MOTION_GRAIN(j), mass[j]);
+    c->mass_i = motion_mass(MOTION_GRAIN(i), s_i->mass);
+    c->mass_j = motion_mass(MOTION_GRAIN(j), s_j->mass);
     c->class = composition_class(COMPOSITION_GRAIN(i), COMPOSITION_GRAIN(j));
     real sum = c->radius_i + c->radius_j, mass_sum = c->mass_i + c->mass_j;
     real both = R(1.0) / (sum * mass_sum); /* one division for both reciprocals */
@@ -78,6 +94,15 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     c->past_slip = add(add_scaled(past, -c->past_approach, c->n),
                        cross3(add_scaled(scale(c->arm_i, c->past_spin_i), c->arm_j, c->past_spin_j), c->n));
     contact_complete(c);
+}
+
+INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR_DECLARE)
+{
+    int i = owner[k], j = other[k];
+    sphere s_i, s_j;
+    sphere_load(launch, i, &s_i PAIR_PASS);
+    sphere_load(launch, j, &s_j PAIR_PASS);
+    contact_of_spheres(launch, i, j, &s_i, &s_j, c PAIR_PASS);
 }
 
 INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_touch *touch PAIR_DECLARE)

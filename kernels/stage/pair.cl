@@ -1,4 +1,4 @@
-/* The pair stage: force and torque of every record, and its history one step on. */
+/* The pair stage: force and torque of every record, and its history one step on. Its kernel is in by_items.cl or by_blocks.cl. */
 #define PAIR_LOAD_STATE(launch, k, s)             \
     BOND_LOAD(launch, k, (s).bond);               \
     COHESION_LOAD(launch, k, (s).cohesion);       \
@@ -38,18 +38,24 @@
 #define PAIR_KEEP_NOTHING(launch, k, s)
 #define PAIR_WORK_OF_WALL ledger_wall(&s.ledger, c.span *(dot3(total, touch.velocity) + dot3(out.rolling, c.spin_j)))
 
-#define PAIR_OF_GRAINS(name, keep)                                                                  \
-    INLINE void name(const clast_launch *launch, int k PAIR_DECLARE)                                \
-    {                                                                                               \
-        contact c;                                                                                  \
+/* The rest of a pair of grains, whose contact `c` is known. */
+#define PAIR_FROM_CONTACT(keep)                                                                     \
+    do {                                                                                            \
         contact_state s;                                                                            \
         response out;                                                                               \
-        contact_of_grains(launch, k, &c PAIR_PASS);                                                 \
-        PAIR_LAWS(keep, (void)0);                                                                  \
+        PAIR_LAWS(keep, (void)0);                                                                   \
         DISSIPATION_HEAT_STORE(launch, k, out.lost, R(0.5));                                        \
         CONDUCTION_STORE(launch, k, conduction_conductance(&c) * (c.temperature_j - c.temperature_i)); \
         vec3 on_other = add_scaled(scale(R(-1.0), out.rolling), c.arm_j, lever);                    \
         ROTATION_STORE_TORQUE(launch, at, on_owner, on_other);                                      \
+    } while (0)
+
+#define PAIR_OF_GRAINS(name, keep)                                                                  \
+    INLINE void name(const clast_launch *launch, int k PAIR_DECLARE)                                \
+    {                                                                                               \
+        contact c;                                                                                  \
+        contact_of_grains(launch, k, &c PAIR_PASS);                                                 \
+        PAIR_FROM_CONTACT(keep);                                                                    \
     }
 
 #define PAIR_OF_WALL(name, keep)                                                                    \
@@ -72,17 +78,6 @@ PAIR_OF_GRAINS(pair_of_grains, PAIR_STORE_STATE)
 PAIR_OF_WALL(pair_of_wall, PAIR_STORE_STATE)
 PAIR_OF_GRAINS(pair_of_grains_as_is, PAIR_KEEP_NOTHING)
 PAIR_OF_WALL(pair_of_wall_as_is, PAIR_KEEP_NOTHING)
-
-__kernel void pair_stage(const clast_launch launch, __global const clast_control *restrict control PAIR_DECLARE)
-{
-    if (control->halt_step <= launch.step)
-        return;
-    int group = launch.first_group + (int)get_group_id(0), k = CLAST_BLOCK * group + (int)get_local_id(0);
-    if (group < launch.first_wall_group)
-        pair_of_grains(&launch, k PAIR_PASS);
-    else
-        pair_of_wall(&launch, k PAIR_PASS);
-}
 
 /* The forces as they stand, with no step taken: what output and observables read. Leaves history alone. */
 __kernel void pair_probe(const clast_launch launch PAIR_DECLARE)

@@ -1,4 +1,5 @@
-/* The particle stage: gathers the contacts of a grain in slot order, adds what acts on the grain itself, and advances it. */
+/* The particle stage: gathers the contacts of a grain in slot order, adds what acts on the grain itself, and advances it. Its kernel is in
+ * by_items.cl or by_blocks.cl. */
 #define PARTICLE_FIELDS(READ, WRITE)                                                                                              \
     READ(uint, slot_offset) READ(int, slots) READ(real, force) RADIUS_OWN(READ, WRITE) READ(real, mass) WRITE(exact, position) WRITE(exact, velocity)   \
     READ(exact, built_position) MOTION_PARTICLE_FIELDS(READ, WRITE) \
@@ -19,10 +20,11 @@ INLINE void particle_gather(const clast_launch *launch, int block, int lane, vec
         int entry = slots[s + lane];
         if (entry == 0)
             break;
-        real sign = entry > 0 ? R(1.0) : R(-1.0);
-        int k = (entry > 0 ? entry : -entry) - 1;
+        /* without a branch, which nobody could foretell */
+        int other = entry >> 31, k = (entry ^ other) - other - 1;
+        real sign = (real)(2 * other + 1);
         f = add_scaled(f, sign, LOAD3(force, launch->record_stride, k));
-        t = add(t, ROTATION_GATHER(launch, k, sign));
+        t = add(t, ROTATION_GATHER(launch, k, other));
         real flow = CONDUCTION_GATHER(launch, k, sign);
         heat_in += flow;
         from_walls += k >= launch->first_wall_group * CLAST_BLOCK ? flow : R(0.0);
@@ -74,27 +76,42 @@ INLINE real particle_heat(const clast_launch *launch, int i, const grain *g, gra
     return RADIUS_STORE(i, g, held);
 }
 
+/* What moves of a grain, with all its bits. */
+typedef struct moving {
+    precise3 position, built_position, velocity, spin;
+    precise3 kept_velocity, kept_spin; /* what the integrator advances */
+} moving;
+
+INLINE void moving_load(const clast_launch *launch, int i, moving *g PARTICLE_DECLARE)
+{
+    g->position = PRECISE_GRAIN3(position, i);
+    g->built_position = PRECISE_GRAIN3(built_position, i);
+    g->velocity = PRECISE_GRAIN3(velocity, i);
+    g->spin = ROTATION_PRECISE(launch, i);
+    g->kept_velocity = INTEGRATOR_VELOCITY(i, g->velocity);
+    g->kept_spin = INTEGRATOR_SPIN(i, g->spin);
+}
+
 /* One step of grain i, whose radius has grown; returns the square of its displacement since the table was built, relative to the common one, its
  * growth included. */
-INLINE real particle_advance(const clast_launch *launch, int i, real grown, vec3 f, vec3 t PARTICLE_DECLARE)
+INLINE real particle_advance(const clast_launch *launch, int i, const moving *g, real grown, vec3 f, vec3 t PARTICLE_DECLARE)
 {
     real dt = number(launch->dt), kick = number(launch->kick), r = GRAIN_RADIUS(i);
     real m = mass[i], inertia = R(0.4) * m * r * r;
     int mover_i = MOTION_GRAIN(i);
-    precise3 x = PRECISE_GRAIN3(position, i), v = PRECISE_GRAIN3(velocity, i), w = RADIUS_SPIN(i, ROTATION_PRECISE(launch, i), grown);
-    precise3 turning = RADIUS_SPIN(i, INTEGRATOR_SPIN(i, ROTATION_PRECISE(launch, i)), grown);
+    precise3 x = g->position, v = g->velocity, w = RADIUS_SPIN(i, g->spin, grown), turning = RADIUS_SPIN(i, g->kept_spin, grown);
     __global const clast_mover *row = MOTION_ROW(launch);
     f = add_scaled(f, m, from3(launch->gravity));
     vec3 damped = body_force(f, rounded3(v), m), damped_t = body_force(t, rounded3(w), inertia);
     vec3 a = scale(R(1.0) / m, damped);
-    precise3 v1 = integrate_velocity(INTEGRATOR_VELOCITY(i, v), a, kick);
+    precise3 v1 = integrate_velocity(g->kept_velocity, a, kick);
     precise3 w1 = rotation_advance(turning, damped_t, inertia, kick);
     precise3 x1 = motion_position(row, mover_i, integrate_position(x, v1, dt), x);
     precise3 v2 = motion_velocity(row, mover_i, INTEGRATOR_AHEAD(v1, integrate_velocity(v1, a, R(0.5) * dt)), x1);
     precise3 w2 = motion_spin(row, mover_i, INTEGRATOR_AHEAD(w1, rotation_advance(w1, damped_t, inertia, R(0.5) * dt)));
-    grain_step step = {m, inertia, kick, rounded3(INTEGRATOR_VELOCITY(i, v)), rounded3(motion_velocity(row, mover_i, v1, x1)),
+    grain_step step = {m, inertia, kick, rounded3(g->kept_velocity), rounded3(motion_velocity(row, mover_i, v1, x1)),
                        rounded3(turning), rounded3(motion_spin(row, mover_i, w1)), f, damped, t, damped_t, mover_i >= 0,
-                       RADIUS_SPIN_WORK(i, rounded3(INTEGRATOR_SPIN(i, ROTATION_PRECISE(launch, i))), grown, inertia)};
+                       RADIUS_SPIN_WORK(i, rounded3(g->kept_spin), grown, inertia)};
     (void)step;
     INTEGRATOR_KEEP_VELOCITY(i, motion_velocity(row, mover_i, v1, x1));
     INTEGRATOR_KEEP_SPIN(i, motion_spin(row, mover_i, w1));
@@ -106,33 +123,29 @@ INLINE real particle_advance(const clast_launch *launch, int i, real grown, vec3
     ORIENTATION_ADVANCE(launch, i, rounded3(w1));
     DISSIPATION_KEEP(i, &step);
     LEDGER_ADVANCE(launch, i, &step);
-    apart3 since_built = apart_less(apart_of(x1, PRECISE_GRAIN3(built_position, i)), PRECISE3(launch->drift));
+    apart3 since_built = apart_less(apart_of(x1, g->built_position), PRECISE3(launch->drift));
     vec3 moved = apart_vector(periodic_nearest(launch, since_built));
     GROWTH_KEEP(i, grown);
     return RADIUS_TRAVEL(i, dot3(moved, moved));
 }
 
-/* The grain at a place in a block. One that has used up half the skin, or has left the domain, stops the batch after this step. */
-INLINE void particle_step(const clast_launch *launch, __global clast_control *control, int block, int lane PARTICLE_DECLARE)
+/* A grain that has used up half the skin, or has left the domain, stops the batch after this step. Whoever writes, writes the same. */
+INLINE bool particle_is_far(const clast_launch *launch, int i, real travel2)
 {
-    int i = CLAST_BLOCK * block + lane;
-    vec3 f, t;
-    grain g;
-    grain_heat h;
-    particle_gather(launch, block, lane, &f, &t, &h PARTICLE_PASS);
-    particle_grain(launch, i, &g PARTICLE_PASS);
-    real grown = particle_heat(launch, i, &g, &h PARTICLE_PASS);
-    real travel2 = particle_advance(launch, i, grown, f, t PARTICLE_PASS);
-    if (i < launch->particle_count && !(travel2 <= number(launch->travel2))) {
-        /* whoever writes, writes the same */
-        control->reason = CLAST_HALT_TRAVEL;
-        control->halt_step = launch->step + 1;
-    }
+    return i < launch->particle_count && !(travel2 <= number(launch->travel2));
 }
 
-__kernel void particle_stage(const clast_launch launch, __global clast_control *restrict control PARTICLE_DECLARE)
+INLINE void particle_halt(const clast_launch *launch, __global clast_control *control)
 {
-    if (control->halt_step <= launch.step)
-        return;
-    particle_step(&launch, control, launch.first_group + (int)get_group_id(0), get_local_id(0) PARTICLE_PASS);
+    control->reason = CLAST_HALT_TRAVEL;
+    control->halt_step = launch->step + 1;
+}
+
+/* Heat, then motion, from what the contacts gave; returns whether the grain is far from where the table found it. */
+INLINE bool particle_step(const clast_launch *launch, int i, const moving *m, vec3 f, vec3 t, grain_heat *h PARTICLE_DECLARE)
+{
+    grain g;
+    particle_grain(launch, i, &g PARTICLE_PASS);
+    real grown = particle_heat(launch, i, &g, h PARTICLE_PASS);
+    return particle_is_far(launch, i, particle_advance(launch, i, m, grown, f, t PARTICLE_PASS));
 }

@@ -1,7 +1,6 @@
 /* Many steps in one work-group, for beds so small that launches would cost more than the work: both stages by the bodies that the two kernels
- * run, barriers between them. The group has LOOP_ITEMS work-items. On a CPU that is one, whose loops over records the compiler vectorises (told
- * that records are independent, as it is for work-items; pocl does not vectorise between barriers that stand in a loop); on a GPU they fill
- * a multiprocessor. Halts exactly as the two kernels do. */
+ * run, barriers between them. The group has LOOP_ITEMS work-items. On a CPU that is one (pocl does not vectorise between barriers that stand in a
+ * loop); on a GPU they fill a multiprocessor. Halts exactly as the two kernels do. */
 #ifndef LOOP_ITEMS
 #define LOOP_ITEMS 1
 #endif
@@ -19,15 +18,12 @@ __kernel void step_loop(__global const clast_launch *restrict launches, __global
     int me = LOOP_ITEMS > 1 ? (int)get_local_id(0) : 0;
     for (int s = 0; s < steps && control->halt_step > s; s++) {
         const clast_launch launch = launches[s];
-#pragma clang loop vectorize(assume_safety)
-        for (int k = me; k < wall_base; k += LOOP_ITEMS)
-            pair_of_grains(&launch, k PAIR_FIELDS(PASS_LOOP_PAIR, PASS_LOOP_PAIR));
+        pair_sweep(&launch, me, LOOP_ITEMS, wall_base PAIR_FIELDS(PASS_LOOP_PAIR, PASS_LOOP_PAIR));
         const clast_launch for_walls = launches[s];
         for (int k = wall_base + me; k < records; k += LOOP_ITEMS)
             pair_of_wall(&for_walls, k PAIR_FIELDS(PASS_LOOP_PAIR, PASS_LOOP_PAIR));
         barrier(CLK_GLOBAL_MEM_FENCE);
-        for (int i = me; i < launch.particle_count; i += LOOP_ITEMS)
-            particle_step(&launch, control, i / CLAST_BLOCK, i % CLAST_BLOCK PARTICLE_FIELDS(PASS_LOOP_PARTICLE, PASS_LOOP_PARTICLE));
+        particle_sweep(&launch, control, me, LOOP_ITEMS, launch.particle_count PARTICLE_FIELDS(PASS_LOOP_PARTICLE, PASS_LOOP_PARTICLE));
         barrier(CLK_GLOBAL_MEM_FENCE);
     }
 }

@@ -203,17 +203,20 @@ static void test_offline(void **state)
         print_message("no clang: programs are not compiled offline\n");
         skip();
     }
-    live_laws live = with(NULL, NULL);
-    compile_offline(&all, &live);
-    for (int k = 0; k < 4; k++) {
-        live = all_at_once(k % 2 != 0, k > 1);
+    for (int k = 0; k < 8; k++) {
+        live_laws live = all_at_once(k % 2 != 0, k / 2 % 2 != 0);
+        live.blocks = k >= 4;
+        compile_offline(&all, &live);
+        live = with(NULL, NULL);
+        live.blocks = k >= 4;
         compile_offline(&all, &live);
     }
     for (size_t a = 0; a < LAWS; a++)
         for (size_t b = a; b < LAWS; b++) {
             if (b > a && (every_law[b]->slot == every_law[a]->slot || meet_nowhere(every_law[a], every_law[b])))
                 continue;
-            live = with(every_law[a], every_law[b]);
+            live_laws live = with(every_law[a], every_law[b]);
+            live.blocks = all.count % 2 != 0; /* either form of the stages */
             compile_offline(&all, &live);
         }
     for (int n = 0; n < AT_ONCE; n++)
@@ -244,6 +247,7 @@ static void test_no_file_forgotten(void **state)
             const char *files[64];
             live_laws live = n <= LAWS ? with(n < LAWS ? every_law[n] : NULL, NULL) : all_at_once(true, true);
             live.servo = true;
+            live.blocks = n % 2 != 0;
             int count = files_of(&live, files);
             for (int k = 0; k < count; k++)
                 found = found || strcmp(files[k], f->name) == 0;
@@ -317,6 +321,7 @@ static void test_on_device(void **state)
     };
     for (size_t n = 0; n < sizeof pairs / sizeof *pairs; n++) {
         live_laws live = with(pairs[n][0], pairs[n][1]);
+        live.blocks = n % 2 != 0;
         check_on_device(&live);
     }
     for (int second = 0; second < 2; second++) {

@@ -1,0 +1,229 @@
+/* The two stages with a block to a work-item, whose loops over records and grains are what the compiler makes vector code of: the form for CPUs.
+ * Its twin is by_items.cl, and both give the same bits. docs/performance.md has what the parts of this gain.
+ *
+ * A CPU gathers one number at a time, and a record needs some twenty of its two grains. So a block reads its grains first, three numbers of a
+ * grain with one load, and turns them into rows: one number of 64 records side by side, which the loop reads in order. And it asks for the
+ * grains of a block to come, because the loop leaves no room to wait for them. The particle stage gathers the forces on its grains into rows. */
+/* Numbers in the widest register of the device (host/launch.c). */
+#ifndef LANES
+#define LANES 4
+#endif
+#define VECTOR_LOOP _Pragma("clang loop vectorize(assume_safety) vectorize_width(LANES)")
+#define BLOCKS_AHEAD 3
+/* Rows of one of the two grains: numbers that are wanted with all their bits take EXACT_REALS rows. */
+#define ROW_POSITION 0
+#define ROW_RADIUS (3 * EXACT_REALS)
+#define ROW_MASS (ROW_RADIUS + EXACT_REALS)
+#define ROW_VELOCITY (ROW_MASS + 1)
+#define ROW_SPIN (ROW_VELOCITY + 3)
+#define ROW_PAST (ROW_SPIN + ROTATION_ROWS)
+#define ROWS_OF_GRAIN (ROW_PAST + INTEGRATOR_ROWS)
+
+#define ROW(rows, n) ((rows) + (n) * CLAST_BLOCK)
+#define ROW_NUMBER(rows, n, lane) (rows)[(n) * CLAST_BLOCK + (lane)]
+#define ROW_VEC3(rows, n, lane) v3(ROW_NUMBER(rows, n, lane), ROW_NUMBER(rows, (n) + 1, lane), ROW_NUMBER(rows, (n) + 2, lane))
+
+#define ROW_PRECISE3(rows, n, lane) \
+    precise3_of(ROW_PRECISE(rows, n, lane), ROW_PRECISE(rows, (n) + EXACT_REALS, lane), ROW_PRECISE(rows, (n) + 2 * EXACT_REALS, lane))
+#define ROW_SET_VEC3(rows, n, lane, v)           \
+    do {                                         \
+        ROW_NUMBER(rows, n, lane) = (v).x;       \
+        ROW_NUMBER(rows, (n) + 1, lane) = (v).y; \
+        ROW_NUMBER(rows, (n) + 2, lane) = (v).z; \
+    } while (0)
+
+/* ---- records ---- */
+
+/* x, y and z of four grains, from three of the four numbers that are loaded of each; the fourth is the next grain's (arrays have room behind
+ * the last). Bits only: a stored number has 64 in either precision. */
+INLINE void rows_turn(__global const exact *field, int4 i, ulong4 *x, ulong4 *y, ulong4 *z)
+{
+    __global const ulong *from = (__global const ulong *)field;
+    ulong4 a = vload4(0, from + 3 * (size_t)i.s0), b = vload4(0, from + 3 * (size_t)i.s1);
+    ulong4 c = vload4(0, from + 3 * (size_t)i.s2), d = vload4(0, from + 3 * (size_t)i.s3);
+    ulong4 even_ab = (ulong4)(a.s0, b.s0, a.s2, b.s2), odd_ab = (ulong4)(a.s1, b.s1, a.s3, b.s3);
+    ulong4 even_cd = (ulong4)(c.s0, d.s0, c.s2, d.s2), odd_cd = (ulong4)(c.s1, d.s1, c.s3, d.s3);
+    *x = (ulong4)(even_ab.s01, even_cd.s01);
+    *y = (ulong4)(odd_ab.s01, odd_cd.s01);
+    *z = (ulong4)(even_ab.s23, even_cd.s23);
+}
+
+/* Three rows of numbers as they are nearest to reals. */
+INLINE void rows_vec3(__global const exact *field, int4 i, real *to)
+{
+    ulong4 x, y, z;
+    rows_turn(field, i, &x, &y, &z);
+    row_rounded(x, to);
+    row_rounded(y, ROW(to, 1));
+    row_rounded(z, ROW(to, 2));
+}
+
+/* Three numbers with all their bits. */
+INLINE void rows_exact3(__global const exact *field, int4 i, real *to)
+{
+    ulong4 x, y, z;
+    rows_turn(field, i, &x, &y, &z);
+    row_exact(x, to, CLAST_BLOCK);
+    row_exact(y, ROW(to, EXACT_REALS), CLAST_BLOCK);
+    row_exact(z, ROW(to, 2 * EXACT_REALS), CLAST_BLOCK);
+}
+
+/* Four records' grains on one side, into the rows of that side. */
+INLINE void rows_fill(int4 i, real *to PAIR_DECLARE)
+{
+    __global const ulong *radii = (__global const ulong *)radius;
+    rows_exact3(position, i, ROW(to, ROW_POSITION));
+    row_exact((ulong4)(radii[i.s0], radii[i.s1], radii[i.s2], radii[i.s3]), ROW(to, ROW_RADIUS), CLAST_BLOCK);
+    vstore4((real4)(mass[i.s0], mass[i.s1], mass[i.s2], mass[i.s3]), 0, ROW(to, ROW_MASS));
+    rows_vec3(velocity, i, ROW(to, ROW_VELOCITY));
+    ROTATION_ROWS_FILL(i, ROW(to, ROW_SPIN));
+    INTEGRATOR_ROWS_FILL(i, ROW(to, ROW_PAST));
+}
+
+INLINE void sphere_of_rows(const real *rows, int lane, sphere *s)
+{
+    s->position = ROW_PRECISE3(rows, ROW_POSITION, lane);
+    s->radius = ROW_PRECISE(rows, ROW_RADIUS, lane);
+    s->mass = ROW_NUMBER(rows, ROW_MASS, lane);
+    s->velocity = ROW_VEC3(rows, ROW_VELOCITY, lane);
+    s->spin = ROTATION_OF_ROWS(rows, ROW_SPIN, lane);
+    s->past_velocity = INTEGRATOR_VELOCITY_OF_ROWS(rows, ROW_PAST, lane, s->velocity);
+    s->past_spin = INTEGRATOR_SPIN_OF_ROWS(rows, ROW_PAST + 3, lane, s->spin);
+}
+
+INLINE void pair_of_rows(const clast_launch *launch, const real *owners, const real *others, int lane, int k PAIR_DECLARE)
+{
+    sphere s_i, s_j;
+    contact c;
+    sphere_of_rows(owners, lane, &s_i);
+    sphere_of_rows(others, lane, &s_j);
+    contact_of_spheres(launch, owner[k], other[k], &s_i, &s_j, &c PAIR_PASS);
+    PAIR_FROM_CONTACT(PAIR_STORE_STATE);
+}
+
+/* Pocl's prefetch() does nothing. */
+#define ASK_FOR(address) __builtin_prefetch((const void *)(size_t)(address), 0, 2)
+INLINE void pair_ask_ahead(int k PAIR_DECLARE)
+{
+    for (int lane = 0; lane < CLAST_BLOCK; lane++) {
+        size_t j = other[k + lane];
+        ASK_FOR(position + 3 * j);
+        ASK_FOR(velocity + 3 * j);
+        ASK_FOR(radius + j);
+        ASK_FOR(mass + j);
+        ROTATION_ASK_FOR(j);
+        INTEGRATOR_ASK_FOR(j);
+    }
+}
+
+/* Where a function deals in vectors of 512 bits, a compiler that would rather not use such registers takes them: here they gain a fifth. */
+INLINE ulong8 widest(ulong8 x)
+{
+    return x + (ulong8)(1);
+}
+
+INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
+{
+    real owners[ROWS_OF_GRAIN * CLAST_BLOCK], others[ROWS_OF_GRAIN * CLAST_BLOCK];
+    int k = (int)(widest((ulong8)((ulong)(CLAST_BLOCK * group))).s0 - 1);
+    for (int quad = 0; quad < CLAST_BLOCK / 4; quad++) {
+        rows_fill(vload4(quad, owner + k), owners + 4 * quad PAIR_PASS);
+        rows_fill(vload4(quad, other + k), others + 4 * quad PAIR_PASS);
+    }
+    if (group + BLOCKS_AHEAD < launch->first_wall_group)
+        pair_ask_ahead(k + BLOCKS_AHEAD * CLAST_BLOCK PAIR_PASS);
+    VECTOR_LOOP
+    for (int lane = 0; lane < CLAST_BLOCK; lane++)
+        pair_of_rows(launch, owners, others, lane, k + lane PAIR_PASS);
+}
+
+INLINE void pair_sweep(const clast_launch *launch, int me, int items, int records PAIR_DECLARE)
+{
+    for (int group = me; group < records / CLAST_BLOCK; group += items)
+        pair_block(launch, group PAIR_PASS);
+}
+
+__kernel void pair_stage(const clast_launch launch, __global const clast_control *restrict control PAIR_DECLARE)
+{
+    if (control->halt_step <= launch.step)
+        return;
+    int group = launch.first_group + (int)get_global_id(0);
+    if (group < launch.first_wall_group)
+        pair_block(&launch, group PAIR_PASS);
+    else
+        for (int lane = 0; lane < CLAST_BLOCK; lane++)
+            pair_of_wall(&launch, CLAST_BLOCK * group + lane PAIR_PASS);
+}
+
+/* ---- grains ---- */
+
+#define ROW_FORCE 0
+#define ROW_TORQUE 3
+#define ROW_HEAT (ROW_TORQUE + ROTATION_ROWS)
+#define ROW_PLACE (ROW_HEAT + CONDUCTION_ROWS)
+#define ROW_BUILT (ROW_PLACE + 3 * EXACT_REALS)
+#define ROW_TRAVEL (ROW_BUILT + 3 * EXACT_REALS)
+#define ROW_TURNING (ROW_TRAVEL + 3 * EXACT_REALS)
+#define ROW_KEPT (ROW_TURNING + ROTATION_ROWS * EXACT_REALS)
+#define ROWS_OF_MOTION (ROW_KEPT + INTEGRATOR_ROWS * EXACT_REALS)
+/* Grains of a work-item: half a block, so that small beds have work for several threads. */
+#define PARTICLE_LANES (CLAST_BLOCK / 2)
+
+INLINE void moving_fill(int4 i, real *to PARTICLE_DECLARE)
+{
+    rows_exact3(position, i, ROW(to, ROW_PLACE));
+    rows_exact3(built_position, i, ROW(to, ROW_BUILT));
+    rows_exact3(velocity, i, ROW(to, ROW_TRAVEL));
+    ROTATION_EXACT_ROWS_FILL(i, ROW(to, ROW_TURNING));
+    INTEGRATOR_EXACT_ROWS_FILL(i, ROW(to, ROW_KEPT));
+}
+
+INLINE void moving_of_rows(const real *rows, int lane, moving *m)
+{
+    m->position = ROW_PRECISE3(rows, ROW_PLACE, lane);
+    m->built_position = ROW_PRECISE3(rows, ROW_BUILT, lane);
+    m->velocity = ROW_PRECISE3(rows, ROW_TRAVEL, lane);
+    m->spin = ROTATION_PRECISE_OF_ROWS(rows, ROW_TURNING, lane);
+    m->kept_velocity = INTEGRATOR_PRECISE_VELOCITY_OF_ROWS(rows, ROW_KEPT, lane, m->velocity);
+    m->kept_spin = INTEGRATOR_PRECISE_SPIN_OF_ROWS(rows, ROW_KEPT + 3 * EXACT_REALS, lane, m->spin);
+}
+
+/* Grains `first` to first + PARTICLE_LANES - 1, which stand in one block. */
+INLINE void particle_block(const clast_launch *launch, __global clast_control *control, int first PARTICLE_DECLARE)
+{
+    real rows[ROWS_OF_MOTION * CLAST_BLOCK];
+    int far = 0;
+    for (int lane = 0; lane < PARTICLE_LANES; lane += 4)
+        moving_fill((int4)(first + lane, first + lane + 1, first + lane + 2, first + lane + 3), rows + lane PARTICLE_PASS);
+    for (int lane = 0; lane < PARTICLE_LANES; lane++) {
+        vec3 f, t;
+        grain_heat h;
+        particle_gather(launch, first / CLAST_BLOCK, first % CLAST_BLOCK + lane, &f, &t, &h PARTICLE_PASS);
+        ROW_SET_VEC3(rows, ROW_FORCE, lane, f);
+        ROTATION_TO_ROWS(rows, ROW_TORQUE, lane, t);
+        CONDUCTION_TO_ROWS(rows, ROW_HEAT, lane, h);
+    }
+    VECTOR_LOOP
+    for (int lane = 0; lane < PARTICLE_LANES; lane++) {
+        grain_heat h;
+        moving m;
+        moving_of_rows(rows, lane, &m);
+        CONDUCTION_OF_ROWS(rows, ROW_HEAT, lane, h);
+        far |= particle_step(launch, first + lane, &m, ROW_VEC3(rows, ROW_FORCE, lane), ROTATION_OF_ROWS(rows, ROW_TORQUE, lane), &h PARTICLE_PASS);
+    }
+    if (far)
+        particle_halt(launch, control);
+}
+
+INLINE void particle_sweep(const clast_launch *launch, __global clast_control *control, int me, int items, int grains PARTICLE_DECLARE)
+{
+    for (int first = me * PARTICLE_LANES; first < grains; first += items * PARTICLE_LANES)
+        particle_block(launch, control, first PARTICLE_PASS);
+}
+
+__kernel void particle_stage(const clast_launch launch, __global clast_control *restrict control PARTICLE_DECLARE)
+{
+    if (control->halt_step <= launch.step)
+        return;
+    particle_block(&launch, control, CLAST_BLOCK * launch.first_group + PARTICLE_LANES * (int)get_global_id(0) PARTICLE_PASS);
+}
