@@ -205,6 +205,8 @@ static void test_bits(void **state)
     compare(v, &reference, (manner){.rebuild_every = 10}, "a table every ten steps");
     compare(v, &reference, (manner){.table = "step_form: two_kernels"}, "two kernels a step");
     compare(v, &reference, (manner){.table = "chunk_records: 64, step_form: two_kernels"}, "steps in chunks");
+    compare(v, &reference, (manner){.table = "kernel_form: items, step_form: two_kernels"}, "a grain or contact to a work-item");
+    compare(v, &reference, (manner){.table = "kernel_form: blocks, chunk_records: 64, step_form: two_kernels"}, "a block to a work-item");
     if (v == MOVING_WALL || v == SHEARED || v == EXPANDING) {
         compare(v, &reference, (manner){.table = "skin_m: 4.0e-5"}, "a thin skin");
         compare(v, &reference, (manner){.table = "batch_steps: 1000"}, "batches of 1000");
