@@ -13,15 +13,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SETTINGS       3 /* times that every bed is set up anew: where its arrays come to lie changes its speed by more than most choices do */
-#define ROUNDS         5
-#define SAMPLES        (SETTINGS * ROUNDS)
-#define SAMPLE_S       0.04
-#define CANDIDATES_MAX 8
-#define GAIN_LEAST     0.03 /* of the time of a step, for another choice than the usual one */
-#define SMALL_BED      2000 /* where batches count */
-#define LOOP_BEDS      5
-#define LOOP_FACTOR    1.5 /* between the usual size and what is found, for it to be taken: near it both forms are as fast */
+#define SETTINGS        3 /* times that every bed is set up anew: where its arrays come to lie changes its speed by more than most choices do */
+#define ROUNDS          5
+#define SAMPLES         (SETTINGS * ROUNDS)
+#define SAMPLE_S        0.04
+#define CANDIDATES_MAX  8
+#define GAIN_LEAST      0.03 /* of the time of a step, for another choice than the usual one */
+#define SMALL_BED       2000 /* where batches count */
+#define CHUNK_BED_LEAST 50000
+#define LOOP_BEDS       5
+#define LOOP_FACTOR     1.5 /* between the usual size and what is found, for it to be taken: near it both forms are as fast */
 
 typedef struct candidate {
     int value;
@@ -176,7 +177,8 @@ static status try_setting(tune_bench *b, trial *t, int setting, failure *why)
     return result;
 }
 
-static status try_values(tune_bench *b, const char *name, const char *unit, int64_t particles, int usual, const int *values, int count, failure *why)
+static status try_values(tune_bench *b, const char *name, const char *unit, int64_t particles, int usual, const int *values, int count,
+                         failure *why)
 {
     trial *t = add_trial(b, name, unit, particles, usual);
     for (t->count = 0; t->count < count; t->count++)
@@ -193,14 +195,18 @@ static status try_blocks(tune_bench *b, failure *why)
     static const int values[] = {32, 64, 128, 256, 512};
     size_t most = 0;
     int count = 0;
-    TRY_CL(clGetDeviceInfo(b->device.info.id, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof most, &most, NULL), "asking for the largest work-group");
+    TRY_CL(clGetDeviceInfo(b->device.info.id, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof most, &most, NULL),
+           "asking for the largest work-group");
     while (count < (int)(sizeof values / sizeof *values) && (size_t)values[count] <= most)
         count++;
     return try_values(b, "block", "grains or records a work-group", b->options->particles, b->usual.block, values, count, why);
 }
 
+/* Beds that go through the stages whole in any case say nothing of chunks. */
 static status try_chunks(tune_bench *b, failure *why)
 {
+    if (b->options->particles < CHUNK_BED_LEAST)
+        return STATUS_OK;
     static const int values[] = {0, 8192, 16384, 32768, 65536, 131072};
     return try_values(b, "chunk_records", "records a chunk; 0: none", b->options->particles, b->usual.chunk_records, values, 6, why);
 }
@@ -269,8 +275,8 @@ static void print_trial(const trial *t)
     printf("%s (%s), %lld grains, us a step\n", t->name, t->unit, (long long)t->particles);
     for (int c = 0; c < t->count; c++) {
         const candidate *one = &t->candidate[c];
-        printf("  %8d%12.4g  %.4g..%.4g%s%s\n", one->value, 1e6 * one->median, 1e6 * one->low, 1e6 * one->high, one->value == t->usual ? "  usual" : "",
-               one->value == t->chosen ? "  taken" : "");
+        printf("  %8d%12.4g  %.4g..%.4g%s%s\n", one->value, 1e6 * one->median, 1e6 * one->low, 1e6 * one->high,
+               one->value == t->usual ? "  usual" : "", one->value == t->chosen ? "  taken" : "");
     }
 }
 
@@ -296,9 +302,10 @@ static json_t *json_trial(const trial *t)
 {
     json_t *list = json_array();
     for (int c = 0; c < t->count; c++)
-        json_array_append_new(list, json_pack("{s:i, s:f, s:f, s:f}", "value", t->candidate[c].value, "s", t->candidate[c].median, "s_low", t->candidate[c].low,
-                                              "s_high", t->candidate[c].high));
-    return json_pack("{s:s, s:I, s:i, s:i, s:o}", "name", t->name, "particles", (json_int_t)t->particles, "usual", t->usual, "taken", t->chosen, "candidates", list);
+        json_array_append_new(list, json_pack("{s:i, s:f, s:f, s:f}", "value", t->candidate[c].value, "s", t->candidate[c].median, "s_low",
+                                              t->candidate[c].low, "s_high", t->candidate[c].high));
+    return json_pack("{s:s, s:I, s:i, s:i, s:o}", "name", t->name, "particles", (json_int_t)t->particles, "usual", t->usual, "taken",
+                     t->chosen, "candidates", list);
 }
 
 static status write_json(const tune_bench *b, failure *why)
@@ -306,15 +313,24 @@ static status write_json(const tune_bench *b, failure *why)
     json_t *list = json_array();
     for (int t = 0; t < b->trial_count; t++)
         json_array_append_new(list, json_trial(&b->trial[t]));
-    json_t *root = json_pack("{s:s, s:{s:i, s:i, s:i, s:i}, s:o}", "device", b->device.info.name, "tuning", "block", b->found.block, "chunk_records",
-                             b->found.chunk_records, "batch_steps", b->found.batch_steps, "loop_records", b->found.loop_records, "trials", list);
+    json_t *root = json_pack("{s:s, s:{s:i, s:i, s:i, s:i}, s:o}", "device", b->device.info.name, "tuning", "block", b->found.block,
+                             "chunk_records", b->found.chunk_records, "batch_steps", b->found.batch_steps, "loop_records",
+                             b->found.loop_records, "trials", list);
     bool whole = root && json_dump_file(root, b->options->json_path, JSON_INDENT(1)) == 0;
     json_decref(root);
     return whole ? STATUS_OK : fail(why, STATUS_ERROR, "%s: cannot be written: %s", b->options->json_path, strerror(errno));
 }
 
+static void warn_of_load(void)
+{
+    double load = 0.0;
+    if (getloadavg(&load, 1) == 1 && load > 0.5)
+        fprintf(stderr, "other programs are busy here (load %.1f): what is found may be their noise; tune on an idle machine\n", load);
+}
+
 static status tune(tune_bench *b, failure *why)
 {
+    warn_of_load();
     static status (*const tries[])(tune_bench *, failure *) = {try_blocks, try_chunks, try_batches, try_loop};
     char path[4096] = "";
     b->usual = b->found = tuning_default(&b->device.info);

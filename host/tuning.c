@@ -15,7 +15,8 @@
 /* By measurement (docs/performance.md); the loop on a GPU is a guess. */
 tuning tuning_default(const device_info *info)
 {
-    return (tuning){.block = CLAST_BLOCK, .batch_steps = 64, .chunk_records = info->cpu ? 32768 : 0, .loop_records = info->cpu ? 1800 : 1000};
+    return (tuning){
+        .block = CLAST_BLOCK, .batch_steps = 64, .chunk_records = info->cpu ? 32768 : 0, .loop_records = info->cpu ? 1800 : 1000};
 }
 
 /* FNV-1a, 64 bits. */
@@ -46,8 +47,9 @@ static bool is_power_of_two(int n)
 
 static bool makes_sense(const tuning *t)
 {
-    return is_power_of_two(t->block) && t->block >= 16 && t->block <= 1024 && t->batch_steps >= 1 && t->batch_steps <= 1024 && t->loop_records >= 0 &&
-           t->loop_records <= 1000000 && (t->chunk_records == 0 || (is_power_of_two(t->chunk_records) && t->chunk_records >= t->block));
+    return is_power_of_two(t->block) && t->block >= 16 && t->block <= 1024 && t->batch_steps >= 1 && t->batch_steps <= 1024 &&
+           t->loop_records >= 0 && t->loop_records <= 1000000 &&
+           (t->chunk_records == 0 || (is_power_of_two(t->chunk_records) && t->chunk_records >= t->block));
 }
 
 tuning tuning_load(const device_info *info)
@@ -71,8 +73,8 @@ status tuning_store(const device_info *info, const tuning *of, char *path, size_
     if (!file_of(info, path, size))
         return fail(why, STATUS_ERROR, "there is no folder to keep the tuning in; set XDG_CACHE_HOME or HOME");
     snprintf(temporary, sizeof temporary, "%s.%ld", path, (long)getpid());
-    json_t *root = json_pack("{s:s, s:i, s:i, s:i, s:i}", "device", info->name, "block", of->block, "batch_steps", of->batch_steps, "chunk_records",
-                             of->chunk_records, "loop_records", of->loop_records);
+    json_t *root = json_pack("{s:s, s:i, s:i, s:i, s:i}", "device", info->name, "block", of->block, "batch_steps", of->batch_steps,
+                             "chunk_records", of->chunk_records, "loop_records", of->loop_records);
     bool kept = root && json_dump_file(root, temporary, JSON_INDENT(1)) == 0 && rename(temporary, path) == 0;
     json_decref(root);
     return kept ? STATUS_OK : fail(why, STATUS_ERROR, "%s: cannot be written: %s", path, strerror(errno));

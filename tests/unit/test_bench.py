@@ -63,6 +63,9 @@ class Bench(unittest.TestCase):
         friction = next(name for name in names if name.endswith("one_by_one___tangential_mindlin.yaml"))
         subprocess.run([CLAST, "check", self.path(friction)], check=True, capture_output=True, timeout=300)
 
+    def test_scene_of_the_validation(self):
+        subprocess.run([CLAST, "check", os.path.join(SOURCE, "scenarios", "validation", "silo.yaml")], check=True, capture_output=True, timeout=300)
+
     def test_kernels(self):
         bench("kernels", "--steps", "5", "--effects", "conduction", "--csv", self.path("k.csv"), "--json", self.path("k.json"))
         rows = table(self.path("k.csv"))
