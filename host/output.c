@@ -109,8 +109,8 @@ static status list_observables(output *o, failure *why)
 {
     static const char *const of_contacts[] = {"elastic_energy", "overlap_max", "coordination_number", "contacts"};
     const scene *scene = o->sim->scene;
-    o->observable = calloc((size_t)(scene->output.observable_count + 6 * scene->wall_count + 1), sizeof *o->observable);
-    o->wall_name = calloc((size_t)(6 * scene->wall_count + 1), sizeof *o->wall_name);
+    o->observable = calloc((size_t)(scene->output.observable_count + 6 * scene->wall_count + scene->wall_group_count + 1), sizeof *o->observable);
+    o->wall_name = calloc((size_t)(6 * scene->wall_count + scene->wall_group_count + 1), sizeof *o->wall_name);
     if (!o->observable || !o->wall_name)
         return fail(why, STATUS_ERROR, "out of memory");
     for (int k = 0; k < scene->output.observable_count; k++) {
@@ -137,6 +137,12 @@ static status list_observables(output *o, failure *why)
         o->value_count++;
     }
     list_poses(o);
+    for (int g = 0; g < scene->wall_group_count; g++) {
+        char *name = o->wall_name[6 * scene->wall_count + g];
+        snprintf(name, sizeof o->wall_name[0], "wall_groups/%s/force", scene->wall_group[g].name);
+        o->observable[o->observable_count++] = (results_observable){name, "N", 3};
+        o->value_count += 3;
+    }
     o->value = calloc((size_t)o->value_count + 1, sizeof *o->value);
     return o->value ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
 }
@@ -367,7 +373,8 @@ static status put_walls(output *o, double *to, failure *why)
     return result;
 }
 
-static void put_poses(const output *o, double *to)
+/* Returns the end of what it has put. */
+static double *put_poses(const output *o, double *to)
 {
     const scene *scene = o->sim->scene;
     for (int w = 0; w < scene->wall_count; w++) {
@@ -383,6 +390,17 @@ static void put_poses(const output *o, double *to)
         pose_quaternion(&pose, to + 6);
         to += 10;
     }
+    return to;
+}
+
+/* Force on every group of walls: the sum over its walls, in their order. */
+static void put_groups(const output *o, const double *walls, double *to)
+{
+    const scene *scene = o->sim->scene;
+    memset(to, 0, sizeof *to * 3 * (size_t)scene->wall_group_count);
+    for (int w = 0; w < scene->wall_count; w++)
+        for (int c = 0; c < 3 && scene->wall[w].group >= 0; c++)
+            to[3 * scene->wall[w].group + c] += walls[6 * w + c];
 }
 
 status output_observe(output *o, failure *why)
@@ -408,7 +426,8 @@ status output_observe(output *o, failure *why)
     for (int k = 0; k < o->sim->scene->output.observable_count; k++)
         to += put_observable(o, o->observable[k].name, &m, to);
     TRY(put_walls(o, to, why));
-    put_poses(o, to + (wall_heat_is_written(o->sim) ? 7 : 6) * o->sim->scene->wall_count);
+    double *end = put_poses(o, to + (wall_heat_is_written(o->sim) ? 7 : 6) * o->sim->scene->wall_count);
+    put_groups(o, to, end);
     return results_observe(o->file, o->sim->step, o->sim->time, o->value, why);
 }
 

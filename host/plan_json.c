@@ -37,6 +37,41 @@ static json_t *groups(const plan *p)
     return list;
 }
 
+/* Null without a servo. */
+static json_t *servo(const servo_choice *choice)
+{
+    const servo_spec *s = &choice->spec;
+    if (!choice->given)
+        return json_null();
+    return json_pack("{s:[f, f, f], s:o, s:o, s:o, s:o}", "direction", s->direction[0], s->direction[1], s->direction[2], "force_n", number(s->force_n),
+                     "pressure_pa", number(s->pressure_pa), "area_m2", number(s->area_m2), "speed_max_m_s", number(s->speed_max_m_s));
+}
+
+static json_t *walls(const plan *p)
+{
+    static const char *const shape[] = {"plane", "box", "rectangle", "disc", "cylinder", "cone"};
+    json_t *list = json_array();
+    for (int w = 0; w < p->scene->wall_count; w++) {
+        const wall *wall = &p->scene->wall[w];
+        bool round = wall->shape == WALL_CYLINDER || wall->shape == WALL_CONE;
+        json_array_append_new(list, json_pack("{s:s, s:s, s:o, s:o, s:b, s:o}", "name", wall->name, "shape", shape[wall->shape], "side",
+                                              text_or_null(!round ? NULL : wall->outside ? "outside" : "inside"), "group",
+                                              text_or_null(wall->group >= 0 ? p->scene->wall_group[wall->group].name : NULL), "moves",
+                                              wall->motion.count > 0, "servo", servo(&wall->servo)));
+    }
+    return list;
+}
+
+static json_t *wall_groups(const plan *p)
+{
+    json_t *list = json_array();
+    for (int g = 0; g < p->scene->wall_group_count; g++) {
+        const wall_group *group = &p->scene->wall_group[g];
+        json_array_append_new(list, json_pack("{s:s, s:b, s:o}", "name", group->name, "moves", group->motion.count > 0, "servo", servo(&group->servo)));
+    }
+    return list;
+}
+
 static json_t *stages(const plan *p)
 {
     json_t *list = json_array();
@@ -149,6 +184,8 @@ status plan_write_json(const plan *p, failure *why)
     json_object_set_new(root, "device", json_string(device));
     json_object_set_new(root, "particles", json_integer(p->particles));
     json_object_set_new(root, "groups", groups(p));
+    json_object_set_new(root, "walls", walls(p));
+    json_object_set_new(root, "wall_groups", wall_groups(p));
     json_object_set_new(root, "overlap_max", number(p->overlap_max));
     json_object_set_new(root, "unused", unused);
     json_object_set_new(root, "biot", biot(p));

@@ -249,6 +249,51 @@ static void test_guards(void **state)
     case_close(&c);
 }
 
+/* On a floor that shakes faster than half of the lid's largest speed, the lid swings to and fro in every period; a hundred in a row are too many. */
+static void test_swings(void **state)
+{
+    (void)state;
+    guard_finding found = {0};
+    const double frequency = 100.0, speed = 0.09, dt = 1.0e-5;
+    char walls[512];
+    snprintf(walls, sizeof walls,
+             "walls:\n  - {name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1], motion: [{type: sinusoid, direction: [0, 0, 1], amplitude_m: %.17g, "
+             "frequency_hz: %g}]}\n  - {name: lid, shape: plane, point_m: [0, 0, 0.002], normal: [0, 0, -1], servo: {direction: [0, 0, -1], force_n: 0.1, "
+             "speed_max_m_s: 0.1, travel_max_m: 1}}\n",
+             speed / (2.0 * PI * frequency), frequency);
+    text t = head(walls);
+    put_one(&t);
+    put_grain(&t, radius, (double[]){0, 0, radius}, none, none);
+    physics_case c = case_open(&t);
+    int looks = 0;
+    for (; looks < 200 && !found.stop; looks++) {
+        case_run(&c, llround(1.0 / (frequency * dt)), dt);
+        MUST(guard_check(c.sim, &found, why));
+    }
+    assert_true(found.stop);
+    BETWEEN(looks, 100, 105);
+    assert_non_null(strstr(found.text, "the servo of the wall `lid` swings to and fro at more than half of its largest speed of 0.1 m/s"));
+    assert_non_null(strstr(found.text, "lower speed_max_m_s"));
+    case_close(&c);
+}
+
+/* Where the scene does not tell the area, `area_m2` does: p A rests on the sphere. */
+static void test_given_area(void **state)
+{
+    (void)state;
+    double f[3];
+    text t = head("walls:\n  - {name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}\n"
+                  "  - {name: lid, shape: plane, point_m: [0, 0, 0.0021], normal: [0, 0, -1], servo: {direction: [0, 0, -1], pressure_pa: 200, area_m2: 1.0e-4, "
+                  "speed_max_m_s: 0.05}}\n");
+    put_one(&t);
+    put_grain(&t, radius, (double[]){0, 0, radius}, none, none);
+    physics_case c = case_open(&t);
+    case_run(&c, 16000, 5.0e-6);
+    force_on(&c, 1, f);
+    RELATIVE(f[2], 200.0 * 1.0e-4, 1e-6);
+    case_close(&c);
+}
+
 static void expect_refusal(const char *walls, const char *wanted)
 {
     failure why = {{0}};
@@ -297,7 +342,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_force),      cmocka_unit_test(test_pressure),    cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_checkpoint), cmocka_unit_test(test_group_servo), cmocka_unit_test(test_group_motion),
-        cmocka_unit_test(test_guards),     cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_guards),     cmocka_unit_test(test_swings),      cmocka_unit_test(test_given_area),
+        cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -226,6 +226,18 @@ class SceneFile(unittest.TestCase):
             self.assertLess(stage_arguments["bytes"], stage_arguments["bytes_max"])
         self.assertGreater(plan["probe"]["particle_steps_per_s"], 0)
 
+    def test_plan_of_walls(self):
+        """Walls, groups of them and servos, as the text shows them."""
+        lid = "{name: lid, shape: disc, center_m: [0, 0, 1], normal: [0, 0, 1], radius_m: 0.1, servo: {direction: [0, 0, -1], force_n: 2, speed_max_m_s: 0.1}}"
+        blade = "{name: blade, group: rotor, shape: cylinder, side: outside, axis_point_m: [1, 0, 0], axis: [0, 0, 1], radius_m: 0.1, length_m: 1}"
+        rotor = "[{name: rotor, motion: [{type: constant, velocity_m_s: [1, 0, 0]}]}]"
+        plan = self.plan("--set", f"wall_groups={rotor}", "--set", f"walls=[{lid}, {blade}]")
+        first, second = plan["walls"]
+        self.assertEqual((first["name"], first["shape"], first["side"], first["group"], first["moves"]), ("lid", "disc", None, None, False))
+        self.assertEqual((first["servo"]["force_n"], first["servo"]["pressure_pa"], first["servo"]["direction"]), (2, None, [0, 0, -1]))
+        self.assertEqual((second["shape"], second["side"], second["group"], second["servo"]), ("cylinder", "outside", "rotor", None))
+        self.assertEqual(plan["wall_groups"], [{"name": "rotor", "moves": True, "servo": None}])
+
     def test_unused_properties(self):
         """A law that needs a property makes it used; a pair's own value hides the default."""
         friction = ["--set", "effects=[{slot: normal, law: hertz}, {slot: tangential, law: mindlin}]"]

@@ -61,12 +61,12 @@ class Oclgrind(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.folder, name)
 
-    def run_scene(self, *options, kernels=None):
+    def run_scene(self, *options, kernels=None, precision="double"):
         """What oclgrind reports. Its interpreter knows few of LLVM's intrinsics, so the kernels are not optimised."""
         with open(self.path("scene.yaml"), "w") as file:
             file.write(SCENE)
         command = ["oclgrind", "--build-options", "-disable-llvm-passes", "--max-errors", "10000", "--log", self.path("log"), *options]
-        command += [CLAST, "run", self.path("scene.yaml"), "--out", self.path("result.h5"), "--quiet"]
+        command += [CLAST, "run", self.path("scene.yaml"), "--out", self.path("result.h5"), "--quiet", "--precision", precision]
         done = subprocess.run(command + (["--kernels", kernels] if kernels else []), capture_output=True, text=True, timeout=300,
                               env={**os.environ, "XDG_CACHE_HOME": self.folder})
         if "OCLGRIND FATAL" in done.stderr:
@@ -76,13 +76,19 @@ class Oclgrind(unittest.TestCase):
             text = file.read()
         return [entry for entry in re.split(r"\n\n(?=\S)", "\n" + text) if entry.strip()]
 
-    def test_memory_and_races(self):
+    def check_memory_and_races(self, precision):
         """The particle stage of every grain may tell the batch to halt while another reads whether it has to: all write the same value,
         and it never means the step under way."""
-        entries = self.run_scene("--data-races", "--check-api")
+        entries = self.run_scene("--data-races", "--check-api", precision=precision)
         halting = [entry for entry in entries if "data race" in entry and "Kernel: particle_stage" in entry and "halt_step" in entry]
         others = [entry for entry in entries if entry not in halting]
         self.assertFalse(others, "\n".join(others[:10]))
+
+    def test_memory_and_races(self):
+        self.check_memory_and_races("double")
+
+    def test_memory_and_races_in_mixed_precision(self):
+        self.check_memory_and_races("mixed")
 
     def test_broken_kernel(self):
         """An access outside a buffer does not go unseen."""
