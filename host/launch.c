@@ -283,6 +283,7 @@ clast_launch launch_values(const simulation *sim)
         .record_stride = sim->table.record_stride,
         .particle_count = (clast_i32)sim->count,
         .first_wall_group = sim->table.wall_base / sim->block,
+        .first_wall_place = sim->table.wall_base,
         .face_count = sim->face_count,
         .mover_count = sim->mover_count,
         .mixed = sim->mixed,

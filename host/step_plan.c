@@ -155,7 +155,7 @@ static status add_pieces(simulation *sim, const planning *p, int wall_shift, fai
     return STATUS_OK;
 }
 
-/* Chunks share places where the particle stage reads nothing of a record but force and torque: what else it reads stands with the record. */
+/* Chunks share places where the particle stage reads nothing of a record but force, torque and heat: what else it reads stands with the record. */
 static bool may_share_places(const simulation *sim)
 {
     if (servo_live(sim))
@@ -163,7 +163,7 @@ static bool may_share_places(const simulation *sim)
     for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
         for (int f = 0; sim->live.law[slot] && f < LAW_ARGUMENTS_MAX; f++) {
             const field *field = sim->live.law[slot]->particle_fields[f];
-            if (field && field->extent == PER_RECORD && field != &field_torque)
+            if (field && field->extent == PER_RECORD && field != &field_torque && field != &field_heat)
                 return false;
         }
     return true;
@@ -237,6 +237,7 @@ static status enqueue_piece(const simulation *sim, cl_command_queue queue, const
     bool watch = sim->watch && !event;
     launch->first_group = piece->first;
     launch->force_shift = piece->force_shift;
+    launch->first_wall_place = sim->plan.force_records > 0 ? sim->plan.force_records : sim->table.wall_base;
     TRY(launch_pass(kernel, name, launch, why));
     TRY_CL(clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &items, &local, 0, NULL, watch ? &watched : event), name);
     if (watch)

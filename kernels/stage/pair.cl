@@ -45,7 +45,7 @@
         response out;                                                                               \
         PAIR_LAWS(keep, (void)0);                                                                   \
         DISSIPATION_HEAT_STORE(launch, k, out.lost, R(0.5));                                        \
-        CONDUCTION_STORE(launch, k, conduction_conductance(&c) * (c.temperature_j - c.temperature_i)); \
+        CONDUCTION_STORE(launch, at, conduction_conductance(&c) * (c.temperature_j - c.temperature_i)); \
         vec3 on_other = add_scaled(scale(R(-1.0), out.rolling), c.arm_j, lever);                    \
         ROTATION_STORE_TORQUE(launch, at, on_owner, on_other);                                      \
     } while (0)
@@ -68,7 +68,7 @@
         contact_of_wall(launch, k, &c, &touch PAIR_PASS);                                           \
         PAIR_LAWS(keep, PAIR_WORK_OF_WALL);                                                         \
         DISSIPATION_HEAT_STORE(launch, k, out.lost, R(1.0));                                        \
-        CONDUCTION_STORE(launch, k, WALL_HEAT_FLOW(launch, other[k], &c, conduction_wall_conductance(&c))); \
+        CONDUCTION_STORE(launch, at, WALL_HEAT_FLOW(launch, other[k], &c, conduction_wall_conductance(&c))); \
         vec3 lever_wall = rounded3(precise3_sub(touch.point, touch.pivot));                         \
         vec3 on_wall = sub(cross3(total, lever_wall), out.rolling);                                 \
         ROTATION_STORE_TORQUE(launch, at, on_owner, on_wall);                                       \

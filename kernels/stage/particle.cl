@@ -27,7 +27,7 @@ INLINE void particle_gather(const clast_launch *launch, int block, int lane, vec
         t = add(t, ROTATION_GATHER(launch, k, other));
         real flow = CONDUCTION_GATHER(launch, k, sign);
         heat_in += flow;
-        from_walls += k >= launch->first_wall_group * CLAST_BLOCK ? flow : R(0.0);
+        from_walls += k >= launch->first_wall_place ? flow : R(0.0);
     }
     *total = f;
     *moment = t;

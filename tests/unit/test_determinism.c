@@ -7,7 +7,7 @@
 
 /* ---- beds ---- */
 
-typedef enum variant { IN_A_BOX, MOVING_WALL, PERIODIC, SHEARED, EXPANDING, VARIANTS } variant;
+typedef enum variant { IN_A_BOX, MOVING_WALL, PERIODIC, SHEARED, EXPANDING, HEATED, VARIANTS } variant;
 
 #define COMMON                                                                                                               \
     "gravity_m_s2: [4, 2, -40]\n"                                                                                            \
@@ -59,6 +59,17 @@ static const char *const scenes[VARIANTS] = {
     "stages: [{name: go, until: {steps: 1}, step_s: 1.0e-5}]\n" GRAINS
     "output: {observables: [work_expansion, heat_walls]}\n"
     "walls: [{name: box, shape: box, low_m: [0, 0, 0.002], high_m: [0.014, 0.014, 0.03], open: [z_high], temperature_k: 500}]\n",
+    /* heat that goes from grain to grain and in from walls, with nothing else that a record keeps for the particle stage */
+    [HEATED] = "gravity_m_s2: [4, 2, -40]\n"
+    "effects: [{slot: normal, law: hertz}, {slot: tangential, law: mindlin}, {slot: conduction, law: overlap_area}]\n"
+    "materials:\n"
+    "  - {name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3, conductivity_w_mk: 10, specific_heat_j_kgk: 100}\n"
+    "  - {name: lead, density_kg_m3: 9000, youngs_modulus_pa: 4.0e6, poissons_ratio: 0.4, conductivity_w_mk: 60, specific_heat_j_kgk: 50}\n"
+    "interactions:\n"
+    "  - {between: default, restitution: 0.5, friction_static: 0.4, friction_dynamic: 0.3}\n"
+    "stages: [{name: go, until: {steps: 1}, step_s: 1.0e-5}]\n" GRAINS
+    "output: {observables: [heat_walls]}\n"
+    "walls: [{name: box, shape: box, low_m: [0, 0, 0.002], high_m: [0.014, 0.014, 0.03], open: [z_high], temperature_k: 500}]\n",
 };
 
 /* ---- runs ---- */
@@ -95,7 +106,8 @@ static void advance(simulation *sim, int64_t steps, const manner *how)
     }
 }
 
-/* What two runs are compared by: positions, velocities and spins in the order of ids, then sums, the step limit and the energy ledger. */
+/* What two runs are compared by: positions, velocities, spins and temperatures in the order of ids, then sums, the step limit
+ * and the energy ledger. */
 typedef struct dump {
     int64_t count; /* doubles */
     double *value;
@@ -105,13 +117,24 @@ static dump dump_of(simulation *sim)
 {
     static const char *const names[] = {"position", "velocity", "spin"};
     int64_t n = 3 * sim->id_count;
-    dump d = {3 * n + 64, calloc((size_t)(3 * n + 64), sizeof(double))};
+    dump d = {4 * n + 64, calloc((size_t)(4 * n + 64), sizeof(double))};
     assert_non_null(d.value);
     for (int f = 0; f < 3; f++) {
         double *rows = NULL;
         MUST(observe_field(sim, names[f], &rows, why));
         memcpy(d.value + f * n, rows, (size_t)n * sizeof *rows);
         free(rows);
+    }
+    if (sim->all.law[SLOT_TEMPERATURE]) {
+        double *temperature = NULL, *tally = NULL, *to = d.value + 3 * n + 64;
+        MUST(observe_field(sim, "temperature", &temperature, why));
+        MUST(observe_field(sim, "heat_tally", &tally, why));
+        for (int64_t i = 0; i < sim->id_count; i++) {
+            to[2 * i] = temperature[i];
+            to[2 * i + 1] = tally[i * CLAST_TALLIES + CLAST_TALLY_WALLS];
+        }
+        free(temperature);
+        free(tally);
     }
     particle_sums sums;
     contact_sums contacts;
@@ -472,6 +495,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(test_bits, (void *)PERIODIC),
         cmocka_unit_test_prestate(test_bits, (void *)SHEARED),
         cmocka_unit_test_prestate(test_bits, (void *)EXPANDING),
+        cmocka_unit_test_prestate(test_bits, (void *)HEATED),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_order_of_grains),
         cmocka_unit_test(test_origin),
