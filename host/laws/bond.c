@@ -179,6 +179,21 @@ static bool shared_quarters(const struct scene *scene, int *exponent, int *radiu
     return found > 0;
 }
 
+/* Some contact that bonds has a strength, in some stage. */
+static bool any_strength(const struct scene *scene)
+{
+    for (int s = 0; scene->material && s < scene->stage_count; s++)
+        for (int a = 0; a < scene->material_count; a++)
+            for (int p = 0; p < scene->material_count + scene->wall_count; p++) {
+                bool wall = p >= scene->material_count;
+                contact_class class = {scene, s, a, wall ? -1 : p, wall ? p - scene->material_count : -1};
+                if (adhesion_of(&class).coefficient > 0.0 && (interaction_value(&class, &property_bond_tensile_strength) < 1e30 ||
+                                                              interaction_value(&class, &property_bond_shear_strength) < 1e30))
+                    return true;
+            }
+    return false;
+}
+
 static void adhesion_scene_constants(const struct scene *scene, char *text, size_t size)
 {
     int exponent = 4, radius = 0;
@@ -186,6 +201,8 @@ static void adhesion_scene_constants(const struct scene *scene, char *text, size
     bool shared = shared_quarters(scene, &exponent, &radius);
     snprintf(text + used, size - used, "#define ADHESION_SHARED %d\n#define ADHESION_QUARTERS %d\n#define ADHESION_RADIUS_QUARTERS (%d)\n", shared,
              exponent, radius);
+    used = strlen(text);
+    snprintf(text + used, size - used, "#define ADHESION_TEARS %d\n", any_strength(scene));
 }
 
 const law law_adhesion = {

@@ -21,6 +21,10 @@
 #ifndef ADHESION_CLAMPS
 #define ADHESION_CLAMPS 1
 #endif
+/* 0: no contact of the scene has a strength, and none is torn. */
+#ifndef ADHESION_TEARS
+#define ADHESION_TEARS 1
+#endif
 /* 1: all contacts of the scene share 4 a and 4 p, two whole numbers, and roots will do; pow() ends the vector code of the pair stage. */
 #ifndef ADHESION_SHARED
 #define ADHESION_SHARED 0
@@ -98,7 +102,7 @@ INLINE void bond_normal(const contact *c, bond_state *s, response *out)
     real damper = c->value[ADHESION_DAMPING] * sqrt(c->mass_eff * (holds ? tangent : R(0.0))) * c->approach;
     real lived = bond_lives(s->count);
     bool may = bonding_value(c, s->bonding) > c->value[BONDING_THRESHOLD] && s->count >= R(0.0);
-    bool torn = -net > c->value[ADHESION_TENSILE] * c->radius_eff * c->overlap;
+    bool torn = ADHESION_TEARS && -net > c->value[ADHESION_TENSILE] * c->radius_eff * c->overlap;
     bool lives = holds && !torn && (lived > R(0.5) || may);
     real force = net + damper;
     if (ADHESION_CLAMPS) { /* beyond equilibrium no net pull, short of it no net push (BM sec. 4) */
@@ -111,7 +115,7 @@ INLINE void bond_normal(const contact *c, bond_state *s, response *out)
     out->damper = lives ? damper : out->damper;
     real size = fabs(s->count), now = lives ? R(1.0) : R(0.0);
     size = now == lived ? size : size + R(1.0);
-    bool blocked = holds && !lives && (s->count < R(0.0) || (torn && lived > R(0.5)));
+    bool blocked = ADHESION_TEARS && holds && !lives && (s->count < R(0.0) || (torn && lived > R(0.5)));
     s->count = blocked ? -size : size;
 }
 
