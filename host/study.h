@@ -51,6 +51,7 @@ typedef struct study_curve {
     ladder ladder;
     const char *along;      /* what the numbers of LADDER_VALUES are: "modulus factor" */
     bool candidate;         /* may be the reference: the scene's own model in double precision */
+    bool other_model;       /* converges to something else than the reference, if to anything */
     bool each_costs;        /* a step of one point costs another time than one of the next */
     char integrator[40], precision[16];
     int set_count;

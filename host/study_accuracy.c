@@ -133,7 +133,7 @@ static void expect_orders(study *s)
         scene *scene = NULL;
         study_point none = {.curve = c};
         char **set = study_sets(s, &none, NULL, 0, &count);
-        if (s->curve[c].ladder == LADDER_STEP && s->seeds == 1 && scene_read(s->options->run.scene_path, count, set, &scene, &ignored) == STATUS_OK)
+        if (s->curve[c].ladder == LADDER_STEP && s->seeds == 1 && !s->curve[c].other_model && scene_read(s->options->run.scene_path, count, set, &scene, &ignored) == STATUS_OK)
             study_expected_order(scene, s->curve[c].expected, sizeof s->curve[c].expected);
         scene_free(scene);
         for (int k = 0; k < count; k++)

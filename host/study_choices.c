@@ -316,6 +316,7 @@ static void choose_laws(study *s, const char *integrator)
         if (scene_read(s->options->run.scene_path, count, set, &other, &ignored) == STATUS_OK) {
             int c = study_add_curve(s, LADDER_STEP, "%s law %s", slot_name(live->law->slot), laws[k]->name);
             set_basis(s, c, integrator, "double");
+            s->curve[c].other_model = true;
             study_add_set(&s->curve[c].set, &s->curve[c].set_count, "%s", set[count - 1]);
             s->curve[c].probe = add_probe(s, c);
         }

@@ -341,7 +341,7 @@ static void find_orders(study *s, int curve)
 {
     study_curve *c = &s->curve[curve];
     c->answer_order = allocate(s->answer_count);
-    bool ordered = c->ladder == LADDER_STEP && s->seeds == 1;
+    bool ordered = c->ladder == LADDER_STEP && s->seeds == 1 && !c->other_model;
     c->order = ordered ? order_of(s, curve, -1) : NAN;
     for (int a = 0; a < s->answer_count; a++)
         c->answer_order[a] = ordered ? order_of(s, curve, a) : NAN;

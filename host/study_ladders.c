@@ -9,12 +9,13 @@
 #define START_S    0.6 /* wall time of a run beside its steps, for planning */
 #define TOP_SHARE  4.0 /* the coarsest step, of the recommended one, where the limit allows it */
 #define BELOW_LIMIT 0.999
+#define BELOW_LIMIT_OF_SEEDS 0.95 /* another seed's bed has another limit */
 #define LEVELS_MIN 4
 
 /* The step of a stage at a level of the ladder: a sample interval over a whole number, so that all runs meet at the samples. */
 static double step_of(const study *s, const study_probe *probe, int stage, int level)
 {
-    double recommended = probe->recommended_s[stage], top = fmin(TOP_SHARE * recommended, BELOW_LIMIT * probe->limit_s[stage]);
+    double recommended = probe->recommended_s[stage], top = fmin(TOP_SHARE * recommended, (s->seeds > 1 ? BELOW_LIMIT_OF_SEEDS : BELOW_LIMIT) * probe->limit_s[stage]);
     double aim = level < 0 ? recommended : top, interval = s->interval_s;
     if (isnan(interval))
         interval = s->scene->stage[stage].until_time_s;

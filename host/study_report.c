@@ -399,7 +399,7 @@ static void print_orders(const study *s)
         printf("  %s", s->answer[a].text);
     printf("\n");
     for (int c = 0; c < s->curve_count; c++) {
-        if (s->curve[c].ladder != LADDER_STEP)
+        if (s->curve[c].ladder != LADDER_STEP || s->curve[c].other_model)
             continue;
         printf("%-34s", s->curve[c].label);
         for (int a = 0; a < s->answer_count; a++)

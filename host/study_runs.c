@@ -203,11 +203,12 @@ static void run_ended(void *context, int index, status result, double wall_s)
         crew_last_line(r->log, line, sizeof line);
     r->status = (int)result;
     s->done++;
+    if (result == STATUS_OK || !p->failed) /* one seed speaks for all */
+        tell(s, r, line);
     if (result != STATUS_OK) {
         p->failed = true;
         snprintf(p->failure, sizeof p->failure, "%.199s", line);
     }
-    tell(s, r, line);
     remove_results(r);
 }
 

@@ -53,6 +53,27 @@ class TestPlot(unittest.TestCase):
         self.out = os.path.join(self.folder.name, "a.png")
         results(self.file)
 
+    def test_study(self):
+        """A study's points as two panels; a results file is none."""
+        study = os.path.join(self.folder.name, "accuracy.h5")
+        with h5py.File(study, "w") as f:
+            points, curves = f.create_group("points"), f.create_group("curves")
+            error = np.array([1e-2, 1e-4, np.nan, 1e-3])
+            for name, value in (("error", error), ("error_bar", [np.nan, np.nan, np.nan, 2e-4]), ("time_s", [1, 2, 3, 1]),
+                                ("particle_steps", [10, 20, 30, 10]), ("reference_uncertainty", [1e-6] * 4), ("pareto", [0, 1, 0, 1])):
+                points[name] = np.array(value, float)
+            points["choice"] = ["a", "a", "a", "b"]
+            curves["choice"], curves["along"], curves["order"] = ["a", "b"], ["share of the recommended step", "modulus factor"], [2.0, np.nan]
+        for ending in ("png", "svg"):
+            picture = os.path.join(self.folder.name, "study." + ending)
+            self.assertEqual(self.plot("study", study, "--out", picture), (0, ""))
+            self.assertGreater(os.path.getsize(picture), 5000)
+        with open(picture) as drawn:
+            self.assertIn("order 2.00", drawn.read())
+        code, said = self.plot("study", self.file, "--out", picture)
+        self.assertEqual((code, len(said.splitlines())), (2, 1))
+        self.assertIn("no study", said)
+
     def plot(self, *arguments):
         """In this process: importing matplotlib takes longer than drawing."""
         with contextlib.redirect_stderr(io.StringIO()) as said:
