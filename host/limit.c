@@ -9,8 +9,10 @@
 
 #define CHUNK 256
 
-/* Safety of the recommended step against the limit, and the share of a contact that it may take (TM sec. 4). */
+/* Safety of the recommended step against the limit, and the share of a contact that it may take (TM sec. 4). Heat advances by Euler's method,
+ * whose error is of the order of the step: stable alone is not enough (docs/accuracy.md, "Cooling by radiation and convection"). */
 #define SAFETY 0.7
+#define SHARE_OF_HEAT 0.1
 #define SHARE_OF_CONTACT 0.1
 /* Contacts through which a grain is expected to be heated at once. */
 #define CONTACTS_EXPECTED 12.0
@@ -151,7 +153,8 @@ status limit_find(simulation *sim, step_limit *out, failure *why)
     snprintf(out->binds, sizeof out->binds, "nothing");
     TRY(note_heat(sim, out, why));
     note_drag(sim, out);
-    out->recommended_s = SAFETY * out->limit_s;
+    double for_heat = SHARE_OF_HEAT * out->limit_s;
+    out->recommended_s = for_heat;
     if (!sim->live.law[SLOT_NORMAL] || sim->count == 0)
         return STATUS_OK;
     double normal, turning, speed, wall_speed, weight = expected_weight(sim);
@@ -176,7 +179,7 @@ status limit_find(simulation *sim, step_limit *out, failure *why)
         }
     out->contact_s = isfinite(shortest) ? shortest : 0.0;
     note_drag(sim, out);
-    out->recommended_s = SAFETY * out->limit_s;
+    out->recommended_s = fmin(SAFETY * out->limit_s, for_heat);
     if (SHARE_OF_CONTACT * shortest < out->recommended_s)
         out->recommended_s = SHARE_OF_CONTACT * shortest;
     return STATUS_OK;

@@ -78,7 +78,7 @@ typedef struct step_plan {
 
 typedef struct step_limit {
     double limit_s;       /* largest stable step; infinite where nothing binds */
-    double recommended_s; /* seven tenths of the limit, and a tenth of the shortest contact */
+    double recommended_s; /* seven tenths of the limit, a tenth of the shortest contact, and a tenth of the limit of heat */
     char binds[64];       /* "normal", "tangential and rolling", "tenth of the contact", ... */
     double contact_s;     /* duration of the shortest contact expected, 0: none */
     heat_limit heat;

@@ -94,6 +94,8 @@ static status find_samples(study *s, failure *why)
         s->duration_s += by_time ? stage->until_time_s : NAN;
     }
     s->interval_s = s->duration_s / (double)scene->study.samples;
+    if (s->seeds > 1 && scene->study.average_from_s > s->duration_s)
+        return fail(why, STATUS_BAD_INPUT, "%s: study.average_from_s is %g s, after the end of the run at %g s", scene->path, scene->study.average_from_s, s->duration_s);
     return STATUS_OK;
 }
 

@@ -334,7 +334,7 @@ static void draw_all(const study *s)
     for (int k = 0; k < 2; k++) {
         snprintf(to, sizeof to, "%s/accuracy.%s", s->options->run.out, ending[k]);
         if (!draw(plot, from, to, said, sizeof said)) {
-            fprintf(stderr, "no diagram is drawn: %s; the tables are in %s\n", said[0] ? said : "python3 cannot be started", s->options->run.out);
+            fprintf(stderr, "no diagram is drawn: %s; the tables are in %s\n", said[0] ? said : "the program `plot` cannot be run", s->options->run.out);
             return;
         }
     }

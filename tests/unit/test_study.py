@@ -158,6 +158,7 @@ class Study(unittest.TestCase):
         self.refused([self.scene, *out, "--set", "study.answers=[\"walls[floor].force\"]"], "name of a wall")
         self.refused([self.scene, *out, "--set", "study.closed_form=[{answer: momentum.x, time_s: [1], value: [0]}]"], "`answers`")
         self.refused([self.scene, *out, "--set", "study.closed_form=[{answer: momentum, time_s: [1], value: [0]}]"], "component")
+        self.refused([self.scene, *out, "--set", "study.seeds=3", "--set", "study.average_from_s=1"], "average_from_s", "after the end")
         self.refused([self.scene, *out, "--set", "stages[impact].until={steps: 10}"], "number of steps", "time_s")
         self.assertFalse(os.path.exists(out[1]))
         self.assertIn("integrator", study("--help").stdout)
