@@ -65,11 +65,11 @@ class StudyStability(unittest.TestCase):
                 self.assertEqual(run["stable"], run["factor"] <= stage["safety_factor"])
 
     def test_conduction(self):
-        """Two grains overshoot their mean past dt = C/H, which is the limit; auto takes seven tenths of it."""
+        """Two grains overshoot their mean past dt = C/H, which is the limit; auto takes a tenth of it, for accuracy."""
         moving, frozen = self.stages(HEAT)
-        self.assertAlmostEqual(moving["auto_min_s"] / (0.7 * moving["limit_s"]), 1.0, places=6)
-        self.assertLess(moving["safety_factor"], 1.02 / 0.7)
-        self.assertGreater(moving["safety_factor"], 0.94 / 0.7)
+        self.assertAlmostEqual(moving["auto_min_s"] / (0.1 * moving["limit_s"]), 1.0, places=6)
+        self.assertLess(moving["safety_factor"], 1.02 / 0.1)
+        self.assertGreater(moving["safety_factor"], 0.94 / 0.1)
         self.assertTrue(frozen["frozen"])
 
     def test_files_and_text(self):
@@ -77,7 +77,7 @@ class StudyStability(unittest.TestCase):
         done = study(self.scene(HEAT), "--out", out, "--stage", "heat")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("stage heat: auto takes", done.stdout)
-        self.assertIn("safety factor 1.", done.stdout)
+        self.assertRegex(done.stdout, r"safety factor \d")
         with open(os.path.join(out, "stability.json")) as file:
             (stage,) = json.load(file)["stages"]
         with open(os.path.join(out, "stability.csv")) as file:
