@@ -118,7 +118,7 @@ typedef struct beam_tables {
     double delivered; /* J */
 } beam_tables;
 
-/* Who is told of every launch of a kernel, with an event to release; for benchmarks. */
+/* Who is told of every launch of a kernel, with an event to release; for benchmarks. `items`: work-items, or of a stage its grains or records. */
 typedef struct launch_watch {
     void (*seen)(void *context, const char *name, cl_kernel kernel, size_t items, cl_event event);
     void *context;

@@ -241,7 +241,7 @@ static status enqueue_piece(const simulation *sim, cl_command_queue queue, const
     TRY(launch_pass(kernel, name, launch, why));
     TRY_CL(clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &items, &local, 0, NULL, watch ? &watched : event), name);
     if (watch)
-        sim->watch->seen(sim->watch->context, name, kernel, items, watched);
+        sim->watch->seen(sim->watch->context, name, kernel, (size_t)piece->count * (size_t)sim->block, watched);
     return STATUS_OK;
 }
 

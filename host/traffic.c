@@ -134,12 +134,12 @@ static double argument_traffic(simulation *sim, const char *kernel, const char *
 
 /* ---- a launch, a step ---- */
 
-/* Share of the whole stage that a launch is. */
+/* Share of its arrays that a launch goes through: of a stage, or of what fills up the last work-groups. */
 static double share_of(const simulation *sim, const char *kernel, size_t items)
 {
-    double whole = strcmp(kernel, "pair_stage") == 0       ? (double)sim->table.record_count
-                   : strcmp(kernel, "particle_stage") == 0 ? (double)((sim->count + sim->block - 1) / sim->block * sim->block)
-                                                           : (double)items;
+    double grains = (double)((sim->count + sim->block - 1) / sim->block * sim->block), records = (double)sim->table.record_count;
+    bool of_records = strcmp(kernel, "pair_stage") == 0 || strcmp(kernel, "table_pad") == 0;
+    double whole = of_records ? records : strcmp(kernel, "particle_stage") == 0 ? grains : (double)items;
     return whole > 0.0 ? (double)items / whole : 0.0;
 }
 
