@@ -1,6 +1,8 @@
 /* A step in chunks: every record and every grain once, no grain before its records, no force overwritten before it has been gathered; and the
  * same bits as in one piece. */
 #include "simulation_case.h"
+#include "frozen.h"
+#include "ledger.h"
 
 #define COMMON                                                                                            \
     "gravity_m_s2: [1, 0.5, -9]\n"                                                                        \
@@ -207,6 +209,96 @@ static void test_bits(void **state)
     }
 }
 
+/* ---- the same bits with history, heat and a wall that answers, and across a stage without motion ---- */
+
+#define EVERYTHING                                                                                                                                   \
+    "gravity_m_s2: [1, 0.5, -9]\n"                                                                                                                    \
+    "effects: [{slot: normal, law: hertz}, {slot: tangential, law: mindlin}, {slot: rolling, law: elastic_plastic}, {slot: conduction, law: overlap_area}," \
+    " {slot: dissipation_heat, law: fraction}%s]\n"                                                                                                   \
+    "materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3, conductivity_w_mk: 60, specific_heat_j_kgk: 50}]\n"  \
+    "interactions: [{between: default, restitution: 0.5, friction_static: 0.4, rolling_friction: 0.05%s}]\n" GRAINS                                   \
+    "walls: [{name: floor, shape: plane, point_m: [0, 0, -0.0009], normal: [0, 0, 1], temperature_k: 500},\n"                                         \
+    "  {name: lid, shape: plane, point_m: [0, 0, 0.0449], normal: [0, 0, -1], servo: {direction: [0, 0, -1], force_n: 0.05, speed_max_m_s: 0.5}}]\n"   \
+    "output: {observables: [heat_walls%s]}\n"                                                                                                         \
+    "stages: [{name: go, until: {steps: 1}, step_s: 1.0e-5}, {name: heat, until: {time_s: 0.01}, motion: frozen, heat: {method: stabilised}},"          \
+    " {name: on, until: {steps: 1}, step_s: 1.0e-5}]\ncontact_table: {chunk_records: %s, step_form: two_kernels}\n"
+
+/* Steps, a frozen stage, steps again: state in the order of ids, then the servo, the ledger and the bonds. */
+static double *run_everything(bool bonds, const char *chunk, int64_t *count)
+{
+    static const struct {
+        const char *name;
+        int components;
+    } fields[] = {{"position", 3}, {"velocity", 3}, {"spin", 3}, {"temperature", 1}};
+    sim_case c;
+    char yaml[8192];
+    snprintf(yaml, sizeof yaml, EVERYTHING, bonds ? ", {slot: bond, law: parallel, criterion: always}" : "",
+             bonds ? ", bond_youngs_modulus_pa: 1.0e7, bond_damping_ratio: 0.2, bond_gap_ratio: 0.02, bond_tensile_strength_pa: 1.0e4" : "",
+             bonds ? "" : ", dissipated_normal, dissipated_tangential, dissipated_rolling, work_walls", chunk);
+    bed b = packed(false);
+    for (int64_t i = 0; i < b.count; i++)
+        b.temperature[i] = 300.0 + (double)(i % 7) * 20.0;
+    case_open_bed(&c, yaml, b);
+    for (int stage = 0; stage < 3; stage++) {
+        if (stage > 0)
+            MUST(simulation_begin_stage(c.sim, stage, why));
+        if (stage == 1) {
+            MUST(frozen_advance(c.sim, c.sim->time + 0.01, INT64_MAX, why));
+            continue;
+        }
+        simulation_set_step(c.sim, 1e-5);
+        MUST(simulation_advance(c.sim, STEPS, why));
+    }
+    assert_int_equal(c.sim->plan.chunk_records, strcmp(chunk, "64") == 0 ? 64 : 0);
+    int64_t n = c.sim->id_count, at = 0;
+    double *all = calloc((size_t)(10 * n + 32), sizeof *all);
+    assert_non_null(all);
+    for (int f = 0; f < 4; f++) {
+        double *rows;
+        MUST(observe_field(c.sim, fields[f].name, &rows, why));
+        memcpy(all + at, rows, sizeof *all * (size_t)(fields[f].components * n));
+        at += fields[f].components * n;
+        free(rows);
+    }
+    contact_sums sums;
+    bond_sums bonded;
+    MUST(observe_contact_sums(c.sim, &sums, why));
+    MUST(bonds_count(c.sim, &bonded, why));
+    assert_true(sums.contacts > 50);
+    assert_true(!bonds || bonded.alive > 100);
+    assert_true(c.sim->drives.drive[0].state.shift > 0.0);
+    all[at++] = sums.elastic;
+    all[at++] = (double)bonded.alive;
+    all[at++] = (double)bonded.broken;
+    all[at++] = c.sim->drives.drive[0].state.shift;
+    all[at++] = c.sim->drives.drive[0].state.force;
+    if (!bonds) {
+        double e[LEDGER_TERMS];
+        MUST(ledger_read(c.sim, e, why));
+        assert_true(e[0] > 0.0);
+        memcpy(all + at, e, sizeof e);
+        at += LEDGER_TERMS;
+    }
+    *count = at;
+    case_close(&c);
+    return all;
+}
+
+static void test_bits_with_everything(void **state)
+{
+    (void)state;
+    for (int bonds = 0; bonds < 2; bonds++) {
+        int64_t count, other;
+        double *whole = run_everything(bonds, "1000000000", &count), *chunked = run_everything(bonds, "64", &other);
+        assert_int_equal(count, other);
+        for (int64_t k = 0; k < count; k++)
+            if (memcmp(&whole[k], &chunked[k], sizeof *whole) != 0)
+                fail_msg("%s bonds: value %lld is %.17g in chunks, %.17g in one piece", bonds ? "with" : "without", (long long)k, chunked[k], whole[k]);
+        free(whole);
+        free(chunked);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -214,6 +306,7 @@ int main(void)
         cmocka_unit_test(test_forces_share_places),
         cmocka_unit_test(test_small_beds_go_whole),
         cmocka_unit_test(test_bits),
+        cmocka_unit_test(test_bits_with_everything),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
