@@ -99,7 +99,8 @@ static status find_grains(const scene *s, const char *text, answer *out, failure
 
 static status find_wall(const scene *s, const char *text, answer *out, failure *why)
 {
-    static const output_name of_walls[] = {{.name = "force", .components = 3}, {.name = "torque", .components = 3}, {.name = "heat", .components = 1}, {0}};
+    static const output_name of_walls[] = {
+        {.name = "force", .components = 3}, {.name = "torque", .components = 3}, {.name = "heat", .components = 1}, {0}};
     char name[64], source[sizeof out->source + 80];
     const char *rest = take_index(text + strlen("walls["), name, sizeof name);
     bool found = false;
@@ -139,11 +140,13 @@ static void pick(const answer *a, const int64_t *first, const double *all, int64
     for (int s = 0; s < out->samples; s++)
         for (int k = 0; k < out->width; k++) {
             int component = a->component >= 0 ? a->component : k % each;
-            out->value[(size_t)s * (size_t)out->width + (size_t)k] = all[((size_t)s * (size_t)rows + (size_t)(low + k / each)) * (size_t)a->components + (size_t)component];
+            out->value[(size_t)s * (size_t)out->width + (size_t)k] =
+                all[((size_t)s * (size_t)rows + (size_t)(low + k / each)) * (size_t)a->components + (size_t)component];
         }
 }
 
-static status read_pair(hid_t file, const char *path, const char *at, const answer *a, const int64_t *first, answer_series *out, failure *why)
+static status read_pair(hid_t file, const char *path, const char *at, const answer *a, const int64_t *first, answer_series *out,
+                        failure *why)
 {
     char name[256];
     snprintf(name, sizeof name, "%s/value", at);
@@ -228,7 +231,8 @@ static status check_closed_form(const scene *scene, const closed_form *form, fai
     if (known && ((found.group >= 0 && found.item < 0) || (found.components > 1 && found.component < 0)))
         snprintf(wrong.text, sizeof wrong.text, "`%.100s` is more than one number; name one grain and one component", form->answer);
     else if (known && (form->time_count != form->value_count || form->time_count == 0))
-        snprintf(wrong.text, sizeof wrong.text, "`time_s` has %d entries and `value` %d; give as many of both, and one at least", form->time_count, form->value_count);
+        snprintf(wrong.text, sizeof wrong.text, "`time_s` has %d entries and `value` %d; give as many of both, and one at least",
+                 form->time_count, form->value_count);
     else if (known) {
         for (int k = 0; k < study->answer_count; k++)
             if (strcmp(study->answers[k], form->answer) == 0)

@@ -4,12 +4,12 @@
 #include "parameter.h"
 
 typedef struct answer {
-    const char *text;   /* as the scene names it */
-    char source[128];   /* observable ("walls/floor/force"), or field of the grains */
-    int group;          /* particle group; -1: an observable */
-    int64_t item;       /* grain of the group; -1: all of it */
-    int components;     /* of the source */
-    int component;      /* -1: all */
+    const char *text; /* as the scene names it */
+    char source[128]; /* observable ("walls/floor/force"), or field of the grains */
+    int group;        /* particle group; -1: an observable */
+    int64_t item;     /* grain of the group; -1: all of it */
+    int components;   /* of the source */
+    int component;    /* -1: all */
 } answer;
 
 /* Samples of an answer: value[sample][width]. */

@@ -22,11 +22,11 @@ extern const char *const study_choice_names[], *const study_choice_docs[];
 
 /* ---- inside ---- */
 
-#define STUDY_LEVELS_MAX 14
+#define STUDY_LEVELS_MAX  14
 #define STUDY_LEVELS_PAST 2 /* steps beyond the finest of the ladder, for the reference */
-#define STUDY_STAGES_MAX 16
+#define STUDY_STAGES_MAX  16
 /* Share of the interval between samples within which two times are the same: mixed precision rounds the step to float. */
-#define SAME_SAMPLE 1e-3
+#define SAME_SAMPLE       1e-3
 #define STUDY_REPEATS_MAX 100
 
 /* What a curve of the diagram goes along. */
@@ -49,28 +49,28 @@ typedef struct study_probe {
 typedef struct study_curve {
     char label[160];
     ladder ladder;
-    const char *along;      /* what the numbers of LADDER_VALUES are: "modulus factor" */
-    bool candidate;         /* may be the reference: the scene's own model in double precision */
-    bool other_model;       /* converges to something else than the reference, if to anything */
-    bool each_costs;        /* a step of one point costs another time than one of the next */
+    const char *along; /* what the numbers of LADDER_VALUES are: "modulus factor" */
+    bool candidate;    /* may be the reference: the scene's own model in double precision */
+    bool other_model;  /* converges to something else than the reference, if to anything */
+    bool each_costs;   /* a step of one point costs another time than one of the next */
     char integrator[40], precision[16];
     int set_count;
     char **set;
-    double order;           /* observed, of the worst answer; NAN */
+    double order; /* observed, of the worst answer; NAN */
     double *answer_order;
-    char expected[64];      /* what docs let expect */
-    double step_cost_s;     /* calibrated; NAN where each point has its own */
-    int probe;              /* of a ladder of steps */
-    int costs_like;         /* curve whose program this one runs, and whose calibrated cost it takes; -1: its own */
+    char expected[64];  /* what docs let expect */
+    double step_cost_s; /* calibrated; NAN where each point has its own */
+    int probe;          /* of a ladder of steps */
+    int costs_like;     /* curve whose program this one runs, and whose calibrated cost it takes; -1: its own */
 } study_curve;
 
 typedef struct study_point {
     int curve, probe;
-    int level;              /* of a ladder of steps; -1: the recommended step */
-    double parameter;       /* share of the recommended step, tolerance, or value */
-    double step_s;          /* of the first moving stage; NAN */
-    bool hidden;            /* only for the reference */
-    int set_count;          /* beyond those of its curve */
+    int level;        /* of a ladder of steps; -1: the recommended step */
+    double parameter; /* share of the recommended step, tolerance, or value */
+    double step_s;    /* of the first moving stage; NAN */
+    bool hidden;      /* only for the reference */
+    int set_count;    /* beyond those of its curve */
     char **set;
     int first_run;
     bool failed;
@@ -91,26 +91,26 @@ typedef struct study_run {
 
 typedef struct study {
     const study_options *options;
-    scene *scene;            /* with study.set and --set */
+    scene *scene; /* with study.set and --set */
     int base_count;
-    char **base;             /* these settings */
-    bool closed_forms_hold;  /* no --set has changed the scene */
-    int64_t *first;          /* grain of every group */
+    char **base;            /* these settings */
+    bool closed_forms_hold; /* no --set has changed the scene */
+    int64_t *first;         /* grain of every group */
     int64_t grains;
     int answer_count;
     answer *answer;
-    double duration_s;       /* NAN where only rest ends the run */
-    double interval_s;       /* between samples; NAN */
+    double duration_s; /* NAN where only rest ends the run */
+    double interval_s; /* between samples; NAN */
     int curve_count;
     study_curve *curve;
     int probe_count;
-    study_probe *probe;      /* shared with the processes that fill them */
+    study_probe *probe; /* shared with the processes that fill them */
     int point_count;
     study_point *point;
-    int seeds;               /* runs a point */
+    int seeds; /* runs a point */
     int run_count;
     study_run *run;
-    run_report *report;      /* by run, shared with the processes */
+    run_report *report; /* by run, shared with the processes */
     int levels;
     double **reference;      /* by answer: samples x width, or the mean's width */
     double *reference_floor; /* by answer: uncertainty */

@@ -49,7 +49,8 @@ static status find_answers(study *s, failure *why)
     const scene *scene = s->scene;
     s->answer_count = scene->study.answer_count;
     if (s->answer_count == 0)
-        return fail(why, STATUS_BAD_INPUT, "%s: the scene names no answers; add them, like study: {answers: [kinetic_energy]}", scene->path);
+        return fail(why, STATUS_BAD_INPUT, "%s: the scene names no answers; add them, like study: {answers: [kinetic_energy]}",
+                    scene->path);
     s->answer = scene_allocate((size_t)s->answer_count, sizeof *s->answer);
     for (int a = 0; a < s->answer_count; a++)
         TRY(answer_find(scene, scene->study.answers[a], &s->answer[a], why));
@@ -70,8 +71,8 @@ static status find_grains(study *s, failure *why)
     for (int a = 0; a < s->answer_count; a++) {
         const answer *answer = &s->answer[a];
         if (answer->group >= 0 && answer->item >= s->first[answer->group + 1] - s->first[answer->group])
-            return fail(why, STATUS_BAD_INPUT, "%s: the answer `%s`: the group has %lld grains, counted from 0", s->scene->path, answer->text,
-                        (long long)(s->first[answer->group + 1] - s->first[answer->group]));
+            return fail(why, STATUS_BAD_INPUT, "%s: the answer `%s`: the group has %lld grains, counted from 0", s->scene->path,
+                        answer->text, (long long)(s->first[answer->group + 1] - s->first[answer->group]));
     }
     return STATUS_OK;
 }
@@ -86,8 +87,10 @@ static status find_samples(study *s, failure *why)
     for (int t = 0; t < scene->stage_count; t++) {
         const scene_stage *stage = &scene->stage[t];
         if (study_moves(stage) && stage->until_steps >= 0)
-            return fail(why, STATUS_BAD_INPUT, "%s:%d:%d: stage %s ends after a number of steps, which is another time for every step; a study needs `time_s`, `rest` or `rest_j`", scene->path,
-                        stage->at.line, stage->at.column, stage->name);
+            return fail(why, STATUS_BAD_INPUT,
+                        "%s:%d:%d: stage %s ends after a number of steps, which is another time for every step; a study needs `time_s`, "
+                        "`rest` or `rest_j`",
+                        scene->path, stage->at.line, stage->at.column, stage->name);
         if (stage->frozen && stage->until_steps >= 0 && isnan(stage->until_time_s))
             continue; /* takes no time, or none that counts */
         bool by_time = isnan(stage->until_rest) && isnan(stage->until_rest_j) && isnan(stage->until_steady_k_s);
@@ -95,7 +98,8 @@ static status find_samples(study *s, failure *why)
     }
     s->interval_s = s->duration_s / (double)scene->study.samples;
     if (s->seeds > 1 && scene->study.average_from_s > s->duration_s)
-        return fail(why, STATUS_BAD_INPUT, "%s: study.average_from_s is %g s, after the end of the run at %g s", scene->path, scene->study.average_from_s, s->duration_s);
+        return fail(why, STATUS_BAD_INPUT, "%s: study.average_from_s is %g s, after the end of the run at %g s", scene->path,
+                    scene->study.average_from_s, s->duration_s);
     return STATUS_OK;
 }
 
@@ -135,7 +139,8 @@ static void expect_orders(study *s)
         scene *scene = NULL;
         study_point none = {.curve = c};
         char **set = study_sets(s, &none, NULL, 0, &count);
-        if (s->curve[c].ladder == LADDER_STEP && s->seeds == 1 && !s->curve[c].other_model && scene_read(s->options->run.scene_path, count, set, &scene, &ignored) == STATUS_OK)
+        if (s->curve[c].ladder == LADDER_STEP && s->seeds == 1 && !s->curve[c].other_model &&
+            scene_read(s->options->run.scene_path, count, set, &scene, &ignored) == STATUS_OK)
             study_expected_order(scene, s->curve[c].expected, sizeof s->curve[c].expected);
         scene_free(scene);
         for (int k = 0; k < count; k++)

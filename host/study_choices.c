@@ -14,13 +14,13 @@
 
 const char *const study_choice_names[] = {"integrator", "precision", "modulus", "heat_steps", "solver", "frozen", "law", NULL};
 const char *const study_choice_docs[] = {"every integrator",
-                                   "every precision",
-                                   "Young's moduli divided by up to a thousand, with and without the corrections that laws offer",
-                                   "heat advanced every n-th step",
-                                   "methods and tolerances of frozen heat",
-                                   "motion frozen where it is free, and free where it is frozen",
-                                   "other normal laws whose properties the scene has",
-                                   NULL};
+                                         "every precision",
+                                         "Young's moduli divided by up to a thousand, with and without the corrections that laws offer",
+                                         "heat advanced every n-th step",
+                                         "methods and tolerances of frozen heat",
+                                         "motion frozen where it is free, and free where it is frozen",
+                                         "other normal laws whose properties the scene has",
+                                         NULL};
 bool study_wants(const study *s, const char *choice)
 {
     const char *at = s->options->choices;
@@ -72,8 +72,17 @@ study_point *study_add_point(study *s, int curve, int probe)
         abort();
     s->point = grown;
     study_point *p = &grown[s->point_count++];
-    *p = (study_point){.curve = curve, .probe = probe, .level = -1, .parameter = NAN, .step_s = NAN, .steps = NAN, .time_s = NAN, .wall_s = NAN,
-                       .error = NAN, .bar = NAN, .uncertainty = NAN};
+    *p = (study_point){.curve = curve,
+                       .probe = probe,
+                       .level = -1,
+                       .parameter = NAN,
+                       .step_s = NAN,
+                       .steps = NAN,
+                       .time_s = NAN,
+                       .wall_s = NAN,
+                       .error = NAN,
+                       .bar = NAN,
+                       .uncertainty = NAN};
     p->answer_error = scene_allocate((size_t)s->answer_count, sizeof *p->answer_error);
     return p;
 }
@@ -169,7 +178,8 @@ static bool some_law_reads(const scene *scene, const property *what)
 static int own_curve(const study *s, const char *integrator)
 {
     for (int c = 0; c < s->curve_count; c++)
-        if (s->curve[c].ladder == LADDER_STEP && strcmp(s->curve[c].integrator, integrator) == 0 && strcmp(s->curve[c].precision, "double") == 0)
+        if (s->curve[c].ladder == LADDER_STEP && strcmp(s->curve[c].integrator, integrator) == 0 &&
+            strcmp(s->curve[c].precision, "double") == 0)
             return c;
     return -1;
 }
@@ -245,7 +255,8 @@ static void choose_heat_steps(study *s, const char *integrator)
 /* Tolerances of one method of frozen heat; stages that move and have heat become frozen where `freeze` says so. */
 static void add_tolerances(study *s, const char *method, const char *integrator, const char *precision, bool freeze)
 {
-    int c = freeze ? study_add_curve(s, LADDER_TOLERANCE, "frozen, %s", method) : study_add_curve(s, LADDER_TOLERANCE, "%s, %s", method, precision);
+    int c = freeze ? study_add_curve(s, LADDER_TOLERANCE, "frozen, %s", method)
+                   : study_add_curve(s, LADDER_TOLERANCE, "%s, %s", method, precision);
     s->curve[c].each_costs = true;
     s->curve[c].candidate = !freeze && strcmp(precision, "double") == 0;
     set_basis(s, c, integrator, precision);
@@ -279,7 +290,8 @@ static void choose_solvers(study *s, const char *integrator, bool freeze)
     for (int m = 0; m < methods; m++)
         for (int p = 0; p < precisions; p++) {
             bool exact = strcmp(precision[p], "double") == 0;
-            if ((!exact && (freeze || !study_wants(s, "precision"))) || (!freeze && !study_wants(s, "solver") && words_find(find_row(&stage_heat_section, "method")->choices, method[m]) != own))
+            if ((!exact && (freeze || !study_wants(s, "precision"))) ||
+                (!freeze && !study_wants(s, "solver") && words_find(find_row(&stage_heat_section, "method")->choices, method[m]) != own))
                 continue;
             add_tolerances(s, method[m], integrator, precision[p], freeze);
         }
@@ -389,7 +401,10 @@ void study_expected_order(const scene *scene, char *text, size_t size)
     else if (falls && scene->integrator == INTEGRATOR_SEMI_IMPLICIT_EULER)
         snprintf(text, size, "1 (free flight by Euler's method)");
     else if (contacts)
-        snprintf(text, size, "%s", slips ? "at most 2 (slip and stick)" : scene->integrator == INTEGRATOR_SEMI_IMPLICIT_EULER ? "2, speeds 1 (elastic contacts)" : "2 (elastic contacts)");
+        snprintf(text, size, "%s",
+                 slips                                                 ? "at most 2 (slip and stick)"
+                 : scene->integrator == INTEGRATOR_SEMI_IMPLICIT_EULER ? "2, speeds 1 (elastic contacts)"
+                                                                       : "2 (elastic contacts)");
     else
         snprintf(text, size, "exact (free flight)");
 }

@@ -138,7 +138,8 @@ static extrapolated extrapolate(const study *s, int curve)
         const answer_series *fine = &run_of(s, p[2], 0)->answer[a];
         int count = compared(s, fine);
         out.value[a] = allocate(count);
-        wp_extrapolation found = wp_richardson(samples_of(s, &run_of(s, p[0], 0)->answer[a]), samples_of(s, &run_of(s, p[1], 0)->answer[a]), samples_of(s, fine), count, out.value[a]);
+        wp_extrapolation found = wp_richardson(samples_of(s, &run_of(s, p[0], 0)->answer[a]), samples_of(s, &run_of(s, p[1], 0)->answer[a]),
+                                               samples_of(s, fine), count, out.value[a]);
         out.floor[a] = found.uncertainty / sqrt((double)count / fine->width);
         out.by_order = out.by_order && found.extrapolated;
         if (!form_of(s, a) && s->scale[a] > 0.0)
@@ -194,7 +195,8 @@ static status refer_to_tolerances(study *s, failure *why)
         memcpy(s->reference[a], samples_of(s, one), sizeof(double) * (size_t)count);
         s->reference_floor[a] = wp_distance(samples_of(s, one), samples_of(s, two), count) / sqrt((double)count / one->width);
     }
-    snprintf(s->reference_text, sizeof s->reference_text, "%s at a tolerance of %g", s->curve[finest[0]->curve].label, finest[0]->parameter);
+    snprintf(s->reference_text, sizeof s->reference_text, "%s at a tolerance of %g", s->curve[finest[0]->curve].label,
+             finest[0]->parameter);
     return STATUS_OK;
 }
 
@@ -204,7 +206,8 @@ static status refer_to_seeds(study *s, failure *why)
     for (int c = 0; c < s->curve_count; c++)
         if (s->curve[c].candidate && point_at(s, c, s->levels)) {
             s->reference_floor = allocate(s->answer_count);
-            snprintf(s->reference_text, sizeof s->reference_text, "%s with half the finest step, mean over %d seeds", s->curve[c].label, s->seeds);
+            snprintf(s->reference_text, sizeof s->reference_text, "%s with half the finest step, mean over %d seeds", s->curve[c].label,
+                     s->seeds);
             return STATUS_OK;
         }
     return fail(why, STATUS_ERROR, "the runs for the reference have failed; see the logs in %s/runs", s->options->run.out);
@@ -240,7 +243,9 @@ static status find_scales(study *s, failure *why)
             s->scale[a] = change > 1e-12 * size ? change : size;
         }
         if (!(s->scale[a] > 0.0))
-            return fail(why, STATUS_BAD_INPUT, "%s: the answer `%s` is 0 all the time, so that its error is no share of anything; leave it out", s->scene->path, s->answer[a].text);
+            return fail(why, STATUS_BAD_INPUT,
+                        "%s: the answer `%s` is 0 all the time, so that its error is no share of anything; leave it out", s->scene->path,
+                        s->answer[a].text);
     }
     return STATUS_OK;
 }
@@ -256,8 +261,10 @@ static status error_to_form(const study *s, int a, const closed_form *form, cons
             if (fabs(series->time[n] - form->time_s[k]) <= SAME_SAMPLE * (isnan(s->interval_s) ? form->time_s[k] : s->interval_s))
                 at = n;
         if (at < 0)
-            return fail(why, STATUS_BAD_INPUT, "%s:%d:%d: closed form of `%s`: %g s is no time of a sample; there are %lld, %g s apart (`study.samples`)", s->scene->path, form->at.line,
-                        form->at.column, form->answer, form->time_s[k], (long long)s->scene->study.samples, s->interval_s);
+            return fail(why, STATUS_BAD_INPUT,
+                        "%s:%d:%d: closed form of `%s`: %g s is no time of a sample; there are %lld, %g s apart (`study.samples`)",
+                        s->scene->path, form->at.line, form->at.column, form->answer, form->time_s[k], (long long)s->scene->study.samples,
+                        s->interval_s);
         sum += pow(series->value[at] - form->value[k], 2);
     }
     *out = sqrt(sum / form->time_count) / s->scale[a];

@@ -6,16 +6,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define START_S    0.6 /* wall time of a run beside its steps, for planning */
-#define TOP_SHARE  4.0 /* the coarsest step, of the recommended one, where the limit allows it */
-#define BELOW_LIMIT 0.999
+#define START_S              0.6 /* wall time of a run beside its steps, for planning */
+#define TOP_SHARE            4.0 /* the coarsest step, of the recommended one, where the limit allows it */
+#define BELOW_LIMIT          0.999
 #define BELOW_LIMIT_OF_SEEDS 0.95 /* another seed's bed has another limit */
-#define LEVELS_MIN 4
+#define LEVELS_MIN           4
 
 /* The step of a stage at a level of the ladder: a sample interval over a whole number, so that all runs meet at the samples. */
 static double step_of(const study *s, const study_probe *probe, int stage, int level)
 {
-    double recommended = probe->recommended_s[stage], top = fmin(TOP_SHARE * recommended, (s->seeds > 1 ? BELOW_LIMIT_OF_SEEDS : BELOW_LIMIT) * probe->limit_s[stage]);
+    double recommended = probe->recommended_s[stage],
+           top = fmin(TOP_SHARE * recommended, (s->seeds > 1 ? BELOW_LIMIT_OF_SEEDS : BELOW_LIMIT) * probe->limit_s[stage]);
     double aim = level < 0 ? recommended : top, interval = s->interval_s;
     if (isnan(interval))
         interval = s->scene->stage[stage].until_time_s;
@@ -47,7 +48,8 @@ static status set_steps(const study *s, study_point *p, failure *why)
         if (probe->limit_s[t] == 0.0)
             continue; /* nothing moves in it */
         if (isnan(step))
-            return fail(why, STATUS_BAD_INPUT, "%s: stage %s: nothing tells how large a step could be; give `until.time_s`", s->scene->path, s->scene->stage[t].name);
+            return fail(why, STATUS_BAD_INPUT, "%s: stage %s: nothing tells how large a step could be; give `until.time_s`", s->scene->path,
+                        s->scene->stage[t].name);
         study_add_set(&p->set, &p->set_count, "stages[%d].step_s=%.17g", t, step);
         if (isnan(p->step_s)) {
             p->step_s = step;
@@ -74,7 +76,8 @@ static double cost_of(const study *s, int levels)
     }
     for (int p = 0; p < s->point_count; p++)
         if (s->point[p].probe >= 0 && s->probe[s->point[p].probe].done)
-            cost += s->seeds * (steps_expected(s, &s->probe[s->point[p].probe], -1) * s->probe[s->point[p].probe].step_cost_s + START_S) / jobs;
+            cost += s->seeds * (steps_expected(s, &s->probe[s->point[p].probe], -1) * s->probe[s->point[p].probe].step_cost_s + START_S) /
+                    jobs;
         else
             cost += s->seeds * START_S;
     return cost;

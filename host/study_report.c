@@ -224,7 +224,9 @@ static bool put_curves(const study *s, hid_t group)
         text[c] = s->curve[c].label;
     bool good = put_texts(group, "choice", rows, text);
     for (int c = 0; c < s->curve_count; c++)
-        text[c] = s->curve[c].ladder == LADDER_STEP ? "share of the recommended step" : s->curve[c].ladder == LADDER_TOLERANCE ? "tolerance" : s->curve[c].along;
+        text[c] = s->curve[c].ladder == LADDER_STEP        ? "share of the recommended step"
+                  : s->curve[c].ladder == LADDER_TOLERANCE ? "tolerance"
+                                                           : s->curve[c].along;
     good &= put_texts(group, "along", rows, text);
     for (int c = 0; c < s->curve_count; c++)
         text[c] = s->curve[c].expected;
@@ -247,7 +249,8 @@ static bool put_study(const study *s, hid_t file)
         answers[a] = s->answer[a].text;
     hid_t points = H5Gcreate2(file, "points", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     hid_t curves = H5Gcreate2(file, "curves", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    bool good = points >= 0 && curves >= 0 && put_points(s, points) && put_curves(s, curves) && put_texts(file, "answers", (hsize_t)s->answer_count, answers);
+    bool good = points >= 0 && curves >= 0 && put_points(s, points) && put_curves(s, curves) &&
+                put_texts(file, "answers", (hsize_t)s->answer_count, answers);
     good = good && hdf5_text_attribute(file, "title", s->scene->title) && hdf5_text_attribute(file, "reference", s->reference_text);
     good = good && hdf5_text_dataset(file, "scene", s->scene->text);
     if (points >= 0)
@@ -334,7 +337,8 @@ static void draw_all(const study *s)
     for (int k = 0; k < 2; k++) {
         snprintf(to, sizeof to, "%s/accuracy.%s", s->options->run.out, ending[k]);
         if (!draw(plot, from, to, said, sizeof said)) {
-            fprintf(stderr, "no diagram is drawn: %s; the tables are in %s\n", said[0] ? said : "the program `plot` cannot be run", s->options->run.out);
+            fprintf(stderr, "no diagram is drawn: %s; the tables are in %s\n", said[0] ? said : "the program `plot` cannot be run",
+                    s->options->run.out);
             return;
         }
     }
@@ -422,7 +426,8 @@ static void print_front(const study *s)
             break;
         const study_point *p = &s->point[next];
         before = p->time_s;
-        printf("  %9.3g s  %9.3g particle-steps  error %8.2e  %s, %.3g\n", p->time_s, p->steps * (double)s->grains, study_error(p), s->curve[p->curve].label, p->parameter);
+        printf("  %9.3g s  %9.3g particle-steps  error %8.2e  %s, %.3g\n", p->time_s, p->steps * (double)s->grains, study_error(p),
+               s->curve[p->curve].label, p->parameter);
     }
 }
 
@@ -452,10 +457,12 @@ void study_print(const study *s)
     int failed = 0;
     printf("reference: %s\n", s->reference_text);
     for (int a = 0; a < s->answer_count; a++)
-        printf("  %s: errors are shares of %.6g; the reference is uncertain by %.1e of it\n", s->answer[a].text, s->scale[a], s->reference_floor[a] / s->scale[a]);
+        printf("  %s: errors are shares of %.6g; the reference is uncertain by %.1e of it\n", s->answer[a].text, s->scale[a],
+               s->reference_floor[a] / s->scale[a]);
     if (s->closed_forms_hold && s->scene->study.closed_form_count > 0)
         printf("  %d of the answers are compared with closed forms instead\n", s->scene->study.closed_form_count);
-    printf("\n%-34s %6s  %-38s %9s  %s\n", "choice", "order", "expected", "us a step", "error near the recommended step, or least error (parameter)");
+    printf("\n%-34s %6s  %-38s %9s  %s\n", "choice", "order", "expected", "us a step",
+           "error near the recommended step, or least error (parameter)");
     for (int c = 0; c < s->curve_count; c++)
         print_curve(s, c);
     print_orders(s);

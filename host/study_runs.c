@@ -128,7 +128,12 @@ static void probe_ended(void *context, int index, status result, double wall_s)
 
 status study_fill_probes(study *s, failure *why)
 {
-    const crew probes = {.count = s->probe_count, .jobs = crew_jobs(s->options->jobs, s->grains, s->probe_count), .context = s, .log = probe_log, .work = probe_member, .ended = probe_ended};
+    const crew probes = {.count = s->probe_count,
+                         .jobs = crew_jobs(s->options->jobs, s->grains, s->probe_count),
+                         .context = s,
+                         .log = probe_log,
+                         .work = probe_member,
+                         .ended = probe_ended};
     return s->probe_count > 0 ? crew_run(&probes, why) : STATUS_OK;
 }
 
@@ -184,7 +189,8 @@ static void tell(const study *s, const study_run *r, const char *line)
 {
     const study_point *p = &s->point[r->point];
     if (r->status != STATUS_OK)
-        fprintf(stderr, "[%d/%d] %s, %.3g: failed (exit code %d): %s\n", s->done, s->run_count, s->curve[p->curve].label, p->parameter, r->status, line);
+        fprintf(stderr, "[%d/%d] %s, %.3g: failed (exit code %d): %s\n", s->done, s->run_count, s->curve[p->curve].label, p->parameter,
+                r->status, line);
     else if (!s->options->run.quiet)
         fprintf(stderr, "[%d/%d] %s, %.3g: %.3g s\n", s->done, s->run_count, s->curve[p->curve].label, p->parameter, r->wall_s);
 }
@@ -238,7 +244,12 @@ status study_run_all(study *s, failure *why)
     s->report = crew_shared(sizeof *s->report * (size_t)(s->run_count + 1));
     if (!s->report)
         return fail(why, STATUS_ERROR, "out of memory");
-    const crew runs = {.count = s->run_count, .jobs = crew_jobs(s->options->jobs, s->grains, s->run_count), .context = s, .log = run_log, .work = run_member, .ended = run_ended};
+    const crew runs = {.count = s->run_count,
+                       .jobs = crew_jobs(s->options->jobs, s->grains, s->run_count),
+                       .context = s,
+                       .log = run_log,
+                       .work = run_member,
+                       .ended = run_ended};
     TRY(crew_run(&runs, why));
     if (crew_interrupted())
         return fail(why, STATUS_INTERRUPTED, "interrupted after %d of %d runs", s->done, s->run_count);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 /* Orders outside say that the runs do not converge yet, or that rounding is all that is left. */
-#define ORDER_LOW 0.5
+#define ORDER_LOW  0.5
 #define ORDER_HIGH 6.5
 
 double wp_distance(const double *a, const double *b, int count)

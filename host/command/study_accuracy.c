@@ -85,7 +85,8 @@ static char *help_text(int key, const char *text, void *input)
     fprintf(stream, "Choices (the step is always one):\n");
     for (int k = 0; study_choice_names[k]; k++)
         fprintf(stream, "  %-10s %s\n", study_choice_names[k], study_choice_docs[k]);
-    fprintf(stream, "\nThe scene names its answers under `study`, where `clast reference` lists its other keys. The folder gets accuracy.csv, accuracy.h5 and the"
+    fprintf(stream, "\nThe scene names its answers under `study`, where `clast reference` lists its other keys. The folder gets "
+                    "accuracy.csv, accuracy.h5 and the"
                     " work-precision diagram as accuracy.png and accuracy.svg.");
     fclose(stream);
     return list;

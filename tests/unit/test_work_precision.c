@@ -6,7 +6,8 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+
+#include <cmocka.h> /* after all that it uses */
 
 #define POINTS 10
 
@@ -103,8 +104,10 @@ static void median_and_mean(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(richardson_finds_limit_and_order), cmocka_unit_test(richardson_keeps_the_finest_without_an_order),
-        cmocka_unit_test(order_is_the_slope),               cmocka_unit_test(front_is_what_nothing_beats),
+        cmocka_unit_test(richardson_finds_limit_and_order),
+        cmocka_unit_test(richardson_keeps_the_finest_without_an_order),
+        cmocka_unit_test(order_is_the_slope),
+        cmocka_unit_test(front_is_what_nothing_beats),
         cmocka_unit_test(median_and_mean),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
