@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define FILES_MAX 128 /* of a program */
+
 /* The field lists of kernels/stage: core names, then the slots whose fields follow. */
 typedef enum list_part { LIST_PAIR, LIST_PARTICLE, LIST_SPIN, LIST_TORQUE } list_part;
 
@@ -45,6 +47,7 @@ static const stage_list stage_lists[] = {
     {"heat_frozen_sinks", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_frozen_scale", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_frozen_store", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_flush", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_sums", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_surfaces", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
 };
@@ -54,7 +57,7 @@ static const slot_id pair_slots[] = {SLOT_TABLES, SLOT_COMPOSITION, SLOT_MOTION,
                                      SLOT_SLIP,        SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_DISSIPATION, SLOT_DISSIPATION_HEAT, SLOT_LEDGER, SLOT_WALLS, SLOT_TEMPERATURE, SLOT_MODULUS, SLOT_SOFTENING, SLOT_EXPANSION, SLOT_CONDUCTIVITY, SLOT_CONDUCTION, SLOT_WALL_HEAT,
                                      SLOT_INTEGRATOR};
 static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENTATION, SLOT_TEMPERATURE, SLOT_SUBSTANCE, SLOT_TABLES, SLOT_CONDUCTIVITY, SLOT_RADIUS, SLOT_EXPANSION, SLOT_ENVIRONMENT,
-                                         SLOT_CONDUCTION, SLOT_SOURCE, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY, SLOT_MODULUS, SLOT_DISSIPATION, SLOT_DISSIPATION_HEAT, SLOT_LEDGER, SLOT_INTEGRATOR};
+                                         SLOT_CONDUCTION, SLOT_SOURCE, SLOT_HEAT_STEPS, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY, SLOT_MODULUS, SLOT_DISSIPATION, SLOT_DISSIPATION_HEAT, SLOT_LEDGER, SLOT_INTEGRATOR};
 
 int launch_argument_names(const live_laws *live, const char *kernel, const char **names, int max)
 {
@@ -174,6 +177,8 @@ static bool has_kernel(const simulation *sim, const char *name)
         return step_loop_wanted(sim);
     if (strcmp(name, "particle_synchronise") == 0)
         return live_keeps_half_steps(&sim->live);
+    if (strcmp(name, "heat_flush") == 0)
+        return sim->live.law[SLOT_HEAT_STEPS] != NULL;
     if (strcmp(name, "heat_areas") == 0)
         return sim->live.law[SLOT_WALL_HEAT] == &law_wall_flux;
     if (strncmp(name, "heat_frozen_", 12) == 0)
@@ -206,13 +211,13 @@ static int lanes(const simulation *sim)
 
 status launch_open(simulation *sim, failure *why)
 {
-    const char *files[64], *table_files[LIVE_TABLE_FILES];
+    const char *files[FILES_MAX], *table_files[LIVE_TABLE_FILES];
     char constants[8192], table_constants[256];
     live_table_constants(&sim->live, table_constants, sizeof table_constants);
     live_constants(&sim->live, sim->scene, constants, sizeof constants);
     define_block(sim, table_constants, sizeof table_constants);
     define_block(sim, constants, sizeof constants);
-    int count = live_files(&sim->live, files, 63);
+    int count = live_files(&sim->live, files, FILES_MAX - 1);
     size_t used = strlen(constants);
     if (sim->live.blocks)
         used += (size_t)snprintf(constants + used, sizeof constants - used, "#define LANES %d\n", lanes(sim));
@@ -230,7 +235,7 @@ status launch_open(simulation *sim, failure *why)
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
                                         "particle_synchronise", "step_loop", "servo_place", "servo_stage", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
-                                        "heat_conductances", "heat_limit", "heat_sums", "heat_surfaces", "heat_areas",
+                                        "heat_conductances", "heat_limit", "heat_sums", "heat_surfaces", "heat_areas", "heat_flush",
                                         "heat_frozen_given", "heat_frozen_links", "heat_frozen_stage", "heat_frozen_error",
                                         "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_spectrum", "heat_frozen_residual",
                                         "heat_frozen_correct", "heat_frozen_hold", "heat_frozen_sinks", "heat_frozen_store",
@@ -279,6 +284,7 @@ clast_launch launch_values(const simulation *sim)
         .dt = sim->dt,
         .lag = sim->lag,
         .kick = sim->dt,
+        .heat_span = sim->dt,
         .travel2 = travel * travel,
         .record_stride = sim->table.record_stride,
         .particle_count = (clast_i32)sim->count,

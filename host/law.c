@@ -20,6 +20,7 @@ static const struct {
     [SLOT_BONDING] = {"bonding", false},         [SLOT_BOND] = {"bond", true},              [SLOT_COHESION] = {"cohesion", true},
     [SLOT_SLIP] = {"slip", false},
     [SLOT_TANGENTIAL] = {"tangential", true},    [SLOT_ROLLING] = {"rolling", true},        [SLOT_MODULUS] = {"modulus", true},          [SLOT_SOFTENING] = {"softening", false},
+    [SLOT_HEAT_STEPS] = {"heat_steps", false},
     [SLOT_TABLES] = {"tables", false},           [SLOT_CONDUCTIVITY] = {"conductivity", false}, [SLOT_FRICTION] = {"friction", false},
     [SLOT_RADIUS] = {"radius", true},            [SLOT_EXPANSION] = {"expansion", false},
     [SLOT_DISSIPATION] = {"dissipation", false},

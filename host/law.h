@@ -39,6 +39,7 @@ typedef enum slot_id {
     SLOT_RADIATION,
     SLOT_SOURCE,
     SLOT_HEAT_GENERATION,
+    SLOT_HEAT_STEPS,     /* derived: heat in every n-th step only */
     SLOT_THERMAL_GROUPS, /* derived: grains of prescribed temperature, or heated by a given flux */
     SLOT_HEAT_TALLY,     /* derived: heat by path, where an observable asks for it */
     SLOT_ORIENTATION, /* derived: quaternions, where an output asks for them */

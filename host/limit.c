@@ -126,10 +126,11 @@ static status approach_speed(simulation *sim, double *grains, double *walls, fai
 static status note_heat(simulation *sim, step_limit *out, failure *why)
 {
     TRY(heat_limit_find(sim, &out->heat, why));
-    note(out, out->heat.conduction, "conduction of heat");
-    note(out, out->heat.convection, "convection");
-    note(out, out->heat.radiation, "radiation");
-    note(out, out->heat.all, "conduction, convection and radiation together");
+    double every = sim->live.law[SLOT_HEAT_STEPS] ? (double)sim->scene->stage[sim->stage].heat_every : 1.0;
+    note(out, out->heat.conduction / every, "conduction of heat");
+    note(out, out->heat.convection / every, "convection");
+    note(out, out->heat.radiation / every, "radiation");
+    note(out, out->heat.all / every, "conduction, convection and radiation together");
     return STATUS_OK;
 }
 

@@ -120,6 +120,9 @@ static void derive_heat(const scene *scene, live_laws *out)
     bool profile = (e->temperature_k.given && e->temperature_k.kind == QUANTITY_AXIS) ||
                    (e->gas_velocity_m_s.given && e->gas_velocity_m_s.kind == QUANTITY_AXIS);
     derive_tables(scene, out);
+    for (int t = 0; t < scene->stage_count; t++)
+        if (scene->stage[t].heat_every > 1)
+            out->law[SLOT_HEAT_STEPS] = &law_heat_steps_every;
     out->law[SLOT_TEMPERATURE] = temperature_law(scene, out);
     if (out->law[SLOT_SOURCE])
         out->law[SLOT_SOURCE] = law_of_beams(scene);
@@ -189,6 +192,8 @@ void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, liv
     for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
         if (slot_is_listed(slot) && !scene_effect(scene, stage, slot))
             out->law[slot] = NULL;
+    if (stage >= 0 && scene->stage[stage].heat_every <= 1)
+        out->law[SLOT_HEAT_STEPS] = NULL;
     if (!out->law[SLOT_TANGENTIAL])
         out->law[SLOT_SLIP] = out->law[SLOT_FRICTION] = NULL;
     if (!out->law[SLOT_CONDUCTION])
@@ -220,6 +225,7 @@ static const char *none_file(slot_id slot)
         [SLOT_RADIATION] = "none/radiation.cl",     [SLOT_SOURCE] = "none/source.cl",           [SLOT_HEAT_GENERATION] = "none/heat_generation.cl",
         [SLOT_THERMAL_GROUPS] = "none/thermal_groups.cl", [SLOT_HEAT_TALLY] = "none/heat_tally.cl",
         [SLOT_MODULUS] = "none/modulus.cl",         [SLOT_SOFTENING] = "none/softening.cl",
+        [SLOT_HEAT_STEPS] = "none/heat_steps.cl",
         [SLOT_TABLES] = "none/tables.cl",           [SLOT_CONDUCTIVITY] = "none/conductivity.cl", [SLOT_FRICTION] = "none/friction.cl",
         [SLOT_RADIUS] = "none/radius.cl",           [SLOT_EXPANSION] = "none/expansion.cl",
         [SLOT_DISSIPATION] = "none/dissipation.cl", [SLOT_LEDGER] = "none/ledger.cl",           [SLOT_DISSIPATION_HEAT] = "none/dissipation_heat.cl",

@@ -228,6 +228,7 @@ typedef struct scene_stage {
     double step_s;          /* NAN: auto */
     bool frozen;            /* nothing moves */
     heat_method heat_method;
+    int64_t heat_every;     /* mechanical steps for one of heat, where grains move */
     double heat_tolerance;  /* of the temperature range, a step */
     bool allow_unstable_step;
     bool gravity_given;

@@ -121,6 +121,9 @@ status check_frozen_stage(reader *r, int t)
                              "`steady_k_s` ends stages with `motion: frozen` only; use `time_s` here");
     if (!stage->frozen)
         return STATUS_OK;
+    if (stage->heat_every > 1)
+        return document_fail(r->document, document_at(r->document, "stages[%d].heat.every_steps", t), r->why,
+                             "`every_steps` is for stages in which grains move; where motion is frozen heat has steps of its own");
     if (!scene_has_heat(s))
         return document_fail(r->document, node, r->why,
                              "`motion: frozen` leaves only heat to advance, and no law of heat is listed under `effects`; add one, like "

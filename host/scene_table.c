@@ -372,10 +372,11 @@ static const parameter stage_heat_rows[] = {
      "thermal limit"},
     {.key = "tolerance", .type = PARAMETER_NUMBER, .low = 1e-12, .high = 0.1, .fallback = "1e-6", AT(scene_stage, heat_tolerance),
      .doc = "error of a step, as a share of the range of temperatures (initial, walls, environment and prescribed ones)"},
-    {.key = "every_steps", .type = PARAMETER_LATER, .doc = "heat advanced every n-th mechanical step"},
+    {.key = "every_steps", .type = PARAMETER_INTEGER, .low = 1, .high = 1000000, .fallback = "1", AT(scene_stage, heat_every),
+     .doc = "where grains move: temperatures advance in every n-th step, from what contacts bring in all of them"},
     {0},
 };
-const section stage_heat_section = {.name = "heat of a stage", .doc = "How heat advances in a stage with `motion: frozen`.", .row = stage_heat_rows};
+const section stage_heat_section = {.name = "heat of a stage", .doc = "How heat advances: `method` and `tolerance` in a stage with `motion: frozen`, `every_steps` in others.", .row = stage_heat_rows};
 
 static const parameter stage_rows[] = {
     {.key = "name", .type = PARAMETER_NAME, .shown = "stage1, stage2, ...", AT(scene_stage, name), .doc = "name of the stage"},
@@ -387,7 +388,7 @@ static const parameter stage_rows[] = {
      .doc = "run even with a step beyond the stability limit"},
     {.key = "motion", .type = PARAMETER_CHOICE, .choices = "free|frozen", .fallback = "free", AT(scene_stage, frozen), .as_flag = true,
      .doc = "`frozen`: nothing moves and only temperatures change, with steps of their own; velocities are kept for later stages"},
-    {.key = "heat", .type = PARAMETER_SECTION, .section = &stage_heat_section, .doc = "how heat advances while motion is frozen"},
+    {.key = "heat", .type = PARAMETER_SECTION, .section = &stage_heat_section, .doc = "how heat advances"},
     {.key = "change", .type = PARAMETER_SECTION, .section = &change_section, .doc = "what changes at the start of the stage"},
     {.key = "effects_off", .type = PARAMETER_OTHER, .read = read_effects_off, .shown = "[]", .form = "list of slots",
      .doc = "slots whose law is switched off during this stage"},

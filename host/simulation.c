@@ -549,6 +549,8 @@ status simulation_enter_stage(simulation *sim, int stage, failure *why)
     return table_build(sim, false, why);
 }
 
+static status end_heat_steps(simulation *sim, failure *why);
+
 /* Half-step velocities start anew where laws, gravity or motions change: from the velocities of this moment, under the laws that led to it. */
 static status end_half_steps(simulation *sim, failure *why)
 {
@@ -573,6 +575,7 @@ static status begin_half_steps(simulation *sim, failure *why)
 
 status simulation_begin_stage(simulation *sim, int stage, failure *why)
 {
+    TRY(end_heat_steps(sim, why));
     sim->stage_steps = 0;
     frozen_restart(sim);
     TRY(end_half_steps(sim, why));
@@ -659,6 +662,44 @@ static status look_at_skin(simulation *sim, bool *rebuild, failure *why)
     return STATUS_OK;
 }
 
+/* What temperatures advance by in step s of the batch to come. The same bits whatever the batches: it depends on counts of steps, and where the
+ * step has changed since the last time, on that time. */
+static double heat_span(const simulation *sim, int s)
+{
+    if (!sim->live.law[SLOT_HEAT_STEPS])
+        return sim->dt;
+    int64_t every = sim->scene->stage[sim->stage].heat_every;
+    if ((sim->stage_steps + s + 1) % every != 0)
+        return 0.0;
+    bool alike = sim->step + s + 1 - every >= sim->segment_step;
+    return alike ? (double)every * sim->dt : time_after(sim, s + 1) - sim->heat.since;
+}
+
+static void note_heat_steps(simulation *sim, int done)
+{
+    for (int s = done - 1; s >= 0 && sim->live.law[SLOT_HEAT_STEPS]; s--)
+        if (heat_span(sim, s) > 0.0) {
+            sim->heat.since = time_after(sim, s + 1);
+            return;
+        }
+}
+
+/* At the end of a stage nothing may wait. */
+static status end_heat_steps(simulation *sim, failure *why)
+{
+    cl_kernel kernel = launch_kernel(sim, "heat_flush");
+    if (kernel && sim->time > sim->heat.since) {
+        TRY(simulation_pose_now(sim, why));
+        clast_launch launch = launch_values(sim);
+        launch.heat_span = sim->time - sim->heat.since;
+        TRY(launch_pass(kernel, "heat_flush", &launch, why));
+        TRY(launch_bind(sim, "heat_flush", 1, why));
+        TRY(launch_run(sim, kernel, "heat_flush", sim->count, sim->block, why));
+    }
+    sim->heat.since = sim->time;
+    return STATUS_OK;
+}
+
 clast_launch launch_of_step(const simulation *sim, int s, int bond_step)
 {
     clast_launch launch = launch_values(sim);
@@ -670,6 +711,7 @@ clast_launch launch_of_step(const simulation *sim, int s, int bond_step)
     launch.face_row = sim->walls_move ? s : 0;
     launch.mover_row = sim->groups_move ? s : 0;
     launch.heat_row = sim->heat.vary ? s : 0;
+    launch.heat_span = heat_span(sim, s);
     for (int c = 0; c < 3; c++)
         launch.drift[c] = sim->drift_velocity[c] * since;
     return launch;
@@ -731,6 +773,7 @@ status simulation_advance(simulation *sim, int64_t steps, failure *why)
             allowed = 1; /* a wall that outruns the skin in one step: a table a step */
         if (allowed > 0)
             TRY(run_batch(sim, allowed, &done, &rebuild, why));
+        note_heat_steps(sim, done);
         sim->step += done;
         sim->stage_steps += done;
         sim->lag = done > 0 ? sim->dt : sim->lag;

@@ -88,6 +88,7 @@ typedef struct step_limit {
 /* Tables of heat on the device, and the host's copies of rows that vary from step to step. */
 typedef struct heat_tables {
     cl_mem constants, tables, profile, environment, walls, areas, groups;
+    double since; /* time up to which temperatures have advanced, where they do in every n-th step */
     int rows;
     bool vary;
     clast_environment *environment_rows;

@@ -121,6 +121,8 @@ status state_save(simulation *sim, bundle *out, failure *why)
     bundle_add_f64(out, "run/dt", sim->dt);
     if (live_keeps_half_steps(&sim->all))
         bundle_add_f64(out, "run/lag", sim->lag);
+    if (sim->all.law[SLOT_HEAT_STEPS])
+        bundle_add_f64(out, "run/heat_since", sim->heat.since);
     if (sim->live.frozen) {
         const double progress[5] = {sim->frozen.low, sim->frozen.high, sim->frozen.next, sim->frozen.rate, sim->frozen.hottest};
         bundle_add(out, "run/frozen", BUNDLE_F64, 5, 1, progress);
@@ -335,6 +337,8 @@ static status load_run(simulation *sim, const bundle *in, const char *path, int6
     TRY(load_number(in, path, "run/dt", BUNDLE_F64, &sim->dt, NULL, why));
     if (live_keeps_half_steps(&sim->all))
         TRY(load_number(in, path, "run/lag", BUNDLE_F64, &sim->lag, NULL, why));
+    if (sim->all.law[SLOT_HEAT_STEPS])
+        TRY(load_number(in, path, "run/heat_since", BUNDLE_F64, &sim->heat.since, NULL, why));
     TRY(load_number(in, path, "run/skin", BUNDLE_F64, &sim->table.skin, NULL, why));
     TRY(load_number(in, path, "run/left_count", BUNDLE_I64, NULL, &sim->left_count, why));
     TRY(load_number(in, path, "run/left_mass", BUNDLE_F64, &sim->left_mass, NULL, why));

@@ -114,6 +114,18 @@ const law law_thermal_groups = {
     .particle_fields = {&field_thermal_group, &field_group_heat},
 };
 
+static const field field_heat_waiting = {"heat_waiting", PER_PARTICLE, FIELD_EXACT, 3, FIELD_STATE, "J",
+                                         "heat that waits for its step: of contacts, of walls among them, of dissipation"};
+
+const law law_heat_steps_every = {
+    .name = "every n-th",
+    .slot = SLOT_HEAT_STEPS,
+    .doc = "Heat advances in every n-th step, from what contacts bring in all of them.",
+    .source = "docs/theory.md",
+    .kernel_file = "effect/heat_steps_every.cl",
+    .particle_fields = {&field_heat_waiting},
+};
+
 const law law_heat_tally = {
     .name = "by grain",
     .slot = SLOT_HEAT_TALLY,

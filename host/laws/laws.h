@@ -10,7 +10,7 @@ extern const law law_precision_mixed, law_composition_several, law_periodic_box,
     law_walls_planes, law_walls_finite, law_walls_round, law_orientation_quaternion, law_semi_implicit_euler, law_velocity_verlet, law_velocity_verlet_spin,
     law_dissipation_tracked, law_dissipation_synchronous, law_ledger_energies, law_fraction, law_exponential_softening, law_softening_tracked;
 
-extern const law law_tables_of_pairs, law_tables_of_grains, law_tables_of_both, law_conductivity_tabled, law_friction_tabled, law_modulus_table,
+extern const law law_heat_steps_every, law_tables_of_pairs, law_tables_of_grains, law_tables_of_both, law_conductivity_tabled, law_friction_tabled, law_modulus_table,
     law_temperature_grains_tabled, law_temperature_pairs_tabled;
 /* Of a material's property, as the kernels take what may be a table. */
 double material_constant(const struct scene *scene, int material, const property *property);

@@ -32,6 +32,7 @@ typedef struct clast_launch {
     clast_f64 dt;            /* s */
     clast_f64 lag;           /* s; twice the time by which half-step velocities are behind at the start of the step */
     clast_f64 kick;          /* s; what velocities advance by: dt, or the mean of two steps where they stand half a step behind */
+    clast_f64 heat_span;     /* s by which temperatures advance in this step; 0: they wait */
     clast_f64 gravity[3];    /* m/s2 */
     clast_f64 drift[3];      /* common displacement since the table was built, m */
     clast_f64 travel2;       /* square of the displacement that asks for a new table, m2 */

@@ -85,3 +85,15 @@ __kernel void heat_surfaces(const clast_launch launch, __global exact *restrict 
     particle_grain(&launch, i, &g PARTICLE_PASS);
     coefficient[i] = precise_store(precise_from(convection_coefficient(&g, g.temperature) + radiation_coefficient(&g, hottest)));
 }
+
+/* What waits for its step comes due: at the end of a stage in which heat advances in every n-th step. */
+__kernel void heat_flush(const clast_launch launch PARTICLE_DECLARE)
+{
+    int i = get_global_id(0);
+    grain g;
+    grain_heat h = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
+    if (i >= launch.particle_count)
+        return;
+    particle_grain(&launch, i, &g PARTICLE_PASS);
+    particle_heat(&launch, i, &g, &h PARTICLE_PASS);
+}

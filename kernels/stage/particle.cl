@@ -5,7 +5,7 @@
     READ(exact, built_position) MOTION_PARTICLE_FIELDS(READ, WRITE) \
     ROTATION_PARTICLE_FIELDS(READ, WRITE) ORIENTATION_PARTICLE_FIELDS(READ, WRITE) TEMPERATURE_PARTICLE_FIELDS(READ, WRITE)                \
     SUBSTANCE_PARTICLE_FIELDS(READ, WRITE) TABLES_PARTICLE_FIELDS(READ, WRITE) CONDUCTIVITY_PARTICLE_FIELDS(READ, WRITE) RADIUS_PARTICLE_FIELDS(READ, WRITE) EXPANSION_PARTICLE_FIELDS(READ, WRITE) ENVIRONMENT_PARTICLE_FIELDS(READ, WRITE) CONDUCTION_PARTICLE_FIELDS(READ, WRITE)             \
-    SOURCE_PARTICLE_FIELDS(READ, WRITE) THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE) MODULUS_PARTICLE_FIELDS(READ, WRITE) DISSIPATION_PARTICLE_FIELDS(READ, WRITE) DISSIPATION_HEAT_PARTICLE_FIELDS(READ, WRITE) LEDGER_PARTICLE_FIELDS(READ, WRITE)           \
+    SOURCE_PARTICLE_FIELDS(READ, WRITE) HEAT_STEPS_PARTICLE_FIELDS(READ, WRITE) THERMAL_GROUP_PARTICLE_FIELDS(READ, WRITE) HEAT_TALLY_PARTICLE_FIELDS(READ, WRITE) MODULUS_PARTICLE_FIELDS(READ, WRITE) DISSIPATION_PARTICLE_FIELDS(READ, WRITE) DISSIPATION_HEAT_PARTICLE_FIELDS(READ, WRITE) LEDGER_PARTICLE_FIELDS(READ, WRITE)           \
     INTEGRATOR_PARTICLE_FIELDS(READ, WRITE)
 #define PARTICLE_DECLARE PARTICLE_FIELDS(DECLARE_READ, DECLARE_WRITE)
 #define PARTICLE_PASS PARTICLE_FIELDS(PASS, PASS)
@@ -50,25 +50,26 @@ INLINE void particle_grain(const clast_launch *launch, int i, grain *g PARTICLE_
     ENVIRONMENT_AT(launch, g);
 }
 
-/* One thermal step of grain i, from the flows at its start. What a prescribed temperature takes comes from a source. Returns what the radius
- * grows by. */
+/* One thermal step of grain i, from the flows at its start: `h` holds those of its contacts (W) and what they dissipate (J). What a prescribed
+ * temperature takes comes from a source. Returns what the radius grows by. */
 INLINE real particle_heat(const clast_launch *launch, int i, const grain *g, grain_heat *h PARTICLE_DECLARE)
 {
-    real dt = number(launch->dt), apart = g->surroundings - g->temperature;
+    h->contacts = number(launch->dt) * h->contacts;
+    h->walls = number(launch->dt) * h->walls;
+    HEAT_STEPS_GATHER(launch, i, h);
+    if (HEAT_STEPS_WAITS(launch))
+        return R(0.0);
+    real span = HEAT_STEPS_SPAN(launch), apart = g->surroundings - g->temperature;
     real absorbed = SOURCE_HEAT(launch, i, g), given = absorbed + generation_heat(g) + THERMAL_GROUP_HEAT(launch, i);
-    h->convection = dt * (convection_coefficient(g, g->temperature) * apart);
-    h->radiation = dt * (radiation_coefficient(g, g->temperature) * apart);
-    h->walls = dt * h->walls;
-    h->absorbed = dt * absorbed;
-    real rubbed = R(0.0);
-    DISSIPATION_HEAT_GATHER(launch, i, rubbed);
-    h->rubbed = rubbed;
-    real gain = dt * (h->contacts + given) + (h->convection + h->radiation) + rubbed;
+    h->convection = span * (convection_coefficient(g, g->temperature) * apart);
+    h->radiation = span * (radiation_coefficient(g, g->temperature) * apart);
+    h->absorbed = span * absorbed;
+    real gain = h->contacts + span * given + (h->convection + h->radiation) + h->rubbed;
     precise after = temperature_after(TEMPERATURE_PRECISE(i), temperature_rise(g, gain));
     precise held = THERMAL_GROUP_TEMPERATURE(launch, i, after);
     grain then = *g;
     then.temperature = rounded(after);
-    h->sources = dt * given + temperature_heat(&then, rounded(precise_sub(held, after)));
+    h->sources = span * given + temperature_heat(&then, rounded(precise_sub(held, after)));
     TEMPERATURE_STORE(i, held);
     MODULUS_STORE(i, g, held);
     RESISTIVITY_STORE(i, g, held);
@@ -146,6 +147,8 @@ INLINE bool particle_step(const clast_launch *launch, int i, const moving *m, ve
 {
     grain g;
     particle_grain(launch, i, &g PARTICLE_PASS);
+    h->rubbed = R(0.0);
+    DISSIPATION_HEAT_GATHER(launch, i, h->rubbed);
     real grown = particle_heat(launch, i, &g, h PARTICLE_PASS);
     return particle_is_far(launch, i, particle_advance(launch, i, m, grown, f, t PARTICLE_PASS));
 }

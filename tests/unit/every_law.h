@@ -57,6 +57,7 @@ static const law *const every_law[] = {
     &law_exponential_softening,
     &law_softening_tracked,
     &law_modulus_table,
+    &law_heat_steps_every,
     &law_tables_of_pairs,
     &law_tables_of_grains,
     &law_tables_of_both,

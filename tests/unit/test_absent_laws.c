@@ -133,7 +133,7 @@ static const char *text_of(const char *file)
 /* ---- one program ---- */
 
 typedef struct assembled {
-    const char *files[64];
+    const char *files[128];
     int count;
     words words, symbols; /* of the whole text; defined by its files */
 } assembled;
@@ -143,7 +143,7 @@ static assembled assemble(const live_laws *live, const scene *scene)
     assembled a = {.count = 0};
     char constants[8192], *text = NULL;
     live_constants(live, scene, constants, sizeof constants);
-    a.count = live_files(live, a.files, 63);
+    a.count = live_files(live, a.files, 127);
     a.files[a.count++] = "stage/step_loop.cl";
     MUST(program_assemble(constants, a.files, a.count, NULL, &text, why));
     a.words = all_words(text);

@@ -56,7 +56,7 @@ static const char *const scenes[VARIANTS] = {
     " expansion_1_k: -2.0e-4, softening_temperature_k: 400, heat_generation_w_m3: 2.0e9}\n"
     "interactions:\n"
     "  - {between: default, restitution: 0.5, friction_static: 0.4, friction_dynamic: 0.3, rolling_friction: 0.02}\n"
-    "stages: [{name: go, until: {steps: 1}, step_s: 1.0e-5}]\n" GRAINS
+    "stages: [{name: go, until: {steps: 1}, step_s: 1.0e-5, heat: {every_steps: 3}}]\n" GRAINS
     "output: {observables: [work_expansion, heat_walls]}\n"
     "walls: [{name: box, shape: box, low_m: [0, 0, 0.002], high_m: [0.014, 0.014, 0.03], open: [z_high], temperature_k: 500}]\n",
     /* heat that goes from grain to grain and in from walls, with nothing else that a record keeps for the particle stage */

@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#define FILES_MAX 128
+
 /* What laws read of a scene: sources are as many as it lists. */
 static effect sources[] = {{.law = &law_laser, .beam = {.direction = {0, 0, -1}}}, {.law = &law_burner, .beam = {.direction = {1, 0, 0}}}};
 static const scene plain = {.material_count = 2, .wall_count = 3, .effect_count = 2, .effect = sources};
@@ -24,10 +26,20 @@ static void complete_heat(live_laws *live)
         live->law[SLOT_ENVIRONMENT] = &law_environment_uniform;
     if (live->law[SLOT_SOURCE])
         live->law[SLOT_SOURCE] = law_of_beams(&plain);
-    static const slot_id thermal[] = {SLOT_SUBSTANCE, SLOT_SOURCE, SLOT_CONDUCTION, SLOT_ENVIRONMENT, SLOT_HEAT_GENERATION, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY};
+    static const slot_id thermal[] = {SLOT_SUBSTANCE, SLOT_SOURCE, SLOT_CONDUCTION, SLOT_ENVIRONMENT, SLOT_HEAT_GENERATION, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY, SLOT_HEAT_STEPS};
     for (size_t n = 0; n < sizeof thermal / sizeof *thermal; n++)
         if (live->law[thermal[n]] && (!live->law[SLOT_TEMPERATURE] || thermal[n] == SLOT_CONDUCTION))
             live->law[SLOT_TEMPERATURE] = live->law[SLOT_CONDUCTION] || live->law[SLOT_BONDING] == &law_bonding_temperature || live->law[SLOT_BOND] == &law_sintering ? &law_temperature_pairs : &law_temperature_grains;
+}
+
+/* Laws that look properties up by temperature come with the tables. */
+static void complete_tables(live_laws *live)
+{
+    const law *temperature = live->law[SLOT_TEMPERATURE], *tables = live->law[SLOT_TABLES];
+    bool pairs = live->law[SLOT_FRICTION] || tables == &law_tables_of_pairs || tables == &law_tables_of_both;
+    bool grains = live->law[SLOT_CONDUCTIVITY] || live->law[SLOT_MODULUS] == &law_modulus_table || temperature == &law_temperature_grains_tabled ||
+                  temperature == &law_temperature_pairs_tabled || tables == &law_tables_of_grains || tables == &law_tables_of_both;
+    live->law[SLOT_TABLES] = pairs && grains ? &law_tables_of_both : pairs ? &law_tables_of_pairs : grains ? &law_tables_of_grains : NULL;
 }
 
 /* What a scene derives from the laws that it names: friction and rolling turn grains, a friction law comes with a spring and the reverse. */
@@ -53,6 +65,7 @@ static void complete(live_laws *live)
     if (live->law[SLOT_MODULUS] || live->law[SLOT_RADIUS] || live->law[SLOT_DISSIPATION_HEAT])
         live->law[SLOT_TEMPERATURE] = &law_temperature_grains;
     complete_heat(live);
+    complete_tables(live);
     live->frozen = live->law[SLOT_TEMPERATURE] != NULL;
     const law *verlet = live->law[SLOT_ROTATION] ? &law_velocity_verlet_spin : &law_velocity_verlet;
     live->law[SLOT_INTEGRATOR] = live->law[SLOT_INTEGRATOR] ? verlet : &law_semi_implicit_euler;
@@ -93,7 +106,7 @@ static live_laws all_at_once(bool second, bool mixed)
 static int files_of(const live_laws *live, const char **files)
 {
     const char *table[LIVE_TABLE_FILES];
-    int count = live_files(live, files, 63 - LIVE_TABLE_FILES), tables = live_table_files(live, table);
+    int count = live_files(live, files, FILES_MAX - 1 - LIVE_TABLE_FILES), tables = live_table_files(live, table);
     for (int f = 2; f < tables; f++) /* the first two, precision and periodic box, are in both */
         files[count++] = table[f];
     files[count++] = "stage/step_loop.cl";
@@ -102,7 +115,7 @@ static int files_of(const live_laws *live, const char **files)
 
 static char *assemble(const live_laws *live)
 {
-    const char *files[64];
+    const char *files[FILES_MAX];
     char constants[8192], *text = NULL;
     live_constants(live, &plain, constants, sizeof constants);
     MUST(program_assemble(constants, files, files_of(live, files), NULL, &text, why));
@@ -244,7 +257,7 @@ static void test_no_file_forgotten(void **state)
     for (const kernel_file *f = kernels_embedded; f->name; f++) {
         bool found = strcmp(f->name, "shared.h") == 0 || strcmp(f->name, "base.cl") == 0;
         for (size_t n = 0; n <= LAWS + 1 && !found; n++) {
-            const char *files[64];
+            const char *files[FILES_MAX];
             live_laws live = n <= LAWS ? with(n < LAWS ? every_law[n] : NULL, NULL) : all_at_once(true, true);
             live.servo = true;
             live.blocks = n % 2 != 0;

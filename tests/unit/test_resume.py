@@ -51,6 +51,7 @@ HOT = FIXED.replace("elastic_plastic}]", "elastic_plastic}, {slot: conduction, l
     .replace("poissons_ratio: 0.3", "poissons_ratio: 0.3, conductivity_w_mk: 10, specific_heat_j_kgk: 100, expansion_1_k: 5.0e-4, "
              "softening_temperature_k: 320, heat_generation_w_m3: 1.0e9") \
     .replace("velocity_m_s: [0.3", "temperature_k: 300, velocity_m_s: [0.3") \
+    .replace("step_s: 1.0e-5}", "step_s: 1.0e-5, heat: {every_steps: 3}}") \
     .replace("spin]", "spin, temperature]").replace("work_gravity]", "work_gravity, work_expansion, temperature_max]")
 LONG = BED + """
 stages: [{name: go, until: {time_s: 60}, step_s: STEP}]
