@@ -30,7 +30,7 @@
 
 /* What is looked at in a run, at PROBES times. */
 typedef struct trace {
-    double factor;
+    double factor, fixed;   /* fixed: the step itself, whatever auto takes; 0: none */
     bool stopped;   /* by a guard, or numbers were lost */
     char text[400]; /* why; or what is past what is allowed */
     int probes;
@@ -48,6 +48,8 @@ typedef struct stage_result {
     step_limit limit;               /* at the start */
     double factor, unstable_factor; /* the largest stable one, and the smallest unstable one */
     double given_factor;            /* of the stage's own step; NAN: auto */
+    bool given_stable;
+    char given_text[400];
     char past[400];                 /* what happens past it */
     trace fine;
     int run_count;
@@ -113,17 +115,17 @@ static status take_step(simulation *sim, trace *t, failure *why)
     double dt = isfinite(limit.recommended_s) ? limit.recommended_s : unbound_step(stage);
     t->step_min = fmin(t->step_min, dt);
     t->step_max = fmax(t->step_max, dt);
-    simulation_set_step(sim, t->factor * dt);
+    simulation_set_step(sim, t->fixed > 0.0 ? t->fixed : t->factor * dt);
     return STATUS_OK;
 }
 
 /* Goes on for `span`, or where that is NAN for `steps` of auto's size or to the end of the stage; leaves what it took in t->span. */
-static status run_on(simulation *sim, double factor, double span, int64_t steps, trace *t, failure *why)
+static status run_on(simulation *sim, double factor, double fixed, double span, int64_t steps, trace *t, failure *why)
 {
     const scene_stage *stage = &sim->scene->stage[sim->stage];
     double start = sim->time, until = !isnan(span) ? span : stage->until_time_s;
     int64_t looks = (int64_t)fmax(1.0, LIMIT_CHECK_STEPS / factor), most = (int64_t)fmax(1.0, (double)steps / factor);
-    *t = (trace){.factor = factor, .lowest = INFINITY, .highest = -INFINITY, .step_min = INFINITY};
+    *t = (trace){.factor = factor, .fixed = fixed, .lowest = INFINITY, .highest = -INFINITY, .step_min = INFINITY};
     if (isnan(span) && stage->until_steps >= 0 && (double)stage->until_steps / factor < (double)most)
         most = (int64_t)ceil((double)stage->until_steps / factor);
     TRY(probe(sim, t, why));
@@ -157,12 +159,12 @@ static status open_at(study *s, const bundle *state, simulation **sim, failure *
     return state_load(*sim, state, "the state at the start of the stage", why);
 }
 
-static status run_from(study *s, const bundle *state, double factor, double span, trace *t, failure *why)
+static status run_from(study *s, const bundle *state, double factor, double fixed, double span, trace *t, failure *why)
 {
     simulation *sim = NULL;
     status result = open_at(s, state, &sim, why);
     if (result == STATUS_OK)
-        result = run_on(sim, factor, span, s->options->steps, t, why);
+        result = run_on(sim, factor, fixed, span, s->options->steps, t, why);
     simulation_free(sim);
     return result;
 }
@@ -213,7 +215,7 @@ static bool stable(trace *t, const trace *fine, const trace *half)
 static status try_factor(study *s, const bundle *state, stage_result *r, const trace *half, double factor, bool *ok, failure *why)
 {
     trace *t = &r->run[r->run_count++];
-    TRY(run_from(s, state, factor, r->fine.span, t, why));
+    TRY(run_from(s, state, factor, 0.0, r->fine.span, t, why));
     *ok = stable(t, &r->fine, half);
     if (*ok) {
         r->factor = fmax(r->factor, factor);
@@ -223,6 +225,18 @@ static status try_factor(study *s, const bundle *state, stage_result *r, const t
     }
     if (!s->options->json)
         fprintf(stderr, "stage %s: factor %.4g: %s%s\n", r->stage->name, factor, *ok ? "stable" : "not stable: ", *ok ? "" : t->text);
+    return STATUS_OK;
+}
+
+/* The step that the scene gives. */
+static status try_given(study *s, const bundle *state, stage_result *r, const trace *half, failure *why)
+{
+    trace t;
+    if (isnan(r->given_factor))
+        return STATUS_OK;
+    TRY(run_from(s, state, r->given_factor, r->stage->step_s, r->fine.span, &t, why));
+    r->given_stable = stable(&t, &r->fine, half);
+    snprintf(r->given_text, sizeof r->given_text, "%s", t.text);
     return STATUS_OK;
 }
 
@@ -242,11 +256,11 @@ static status study_moving(study *s, simulation *sim, const bundle *state, stage
 {
     trace half;
     TRY(limit_find(sim, &r->limit, why));
-    TRY(run_on(sim, FINE, NAN, s->options->steps, &r->fine, why));
+    TRY(run_on(sim, FINE, 0.0, NAN, s->options->steps, &r->fine, why));
     if (r->fine.stopped)
         return fail(why, STATUS_GUARD, "%s: stage %s stops at a quarter of auto's step already: %s", s->scene->path, r->stage->name,
                     r->fine.text);
-    TRY(run_from(s, state, HALF, r->fine.span, &half, why));
+    TRY(run_from(s, state, HALF, 0.0, r->fine.span, &half, why));
     if (half.stopped || half.energy_max > 2.0 * r->fine.energy_max + r->fine.rest)
         return fail(why, STATUS_ERROR,
                     "%s: stage %s: runs at a quarter and at half of auto's step differ too much to tell what is stable: energies up to "
@@ -256,6 +270,7 @@ static status study_moving(study *s, simulation *sim, const bundle *state, stage
     r->factor = HALF;
     r->unstable_factor = INFINITY;
     r->given_factor = isfinite(r->limit.recommended_s) ? r->stage->step_s / r->limit.recommended_s : NAN;
+    TRY(try_given(s, state, r, &half, why));
     return bisect(s, state, r, &half, why);
 }
 
@@ -273,7 +288,7 @@ static status study_stage(study *s, simulation *sim, int index, failure *why)
         return STATUS_OK; /* its step is chosen by its error */
     }
     if (!asked)
-        return run_on(sim, 1.0, NAN, s->options->steps, &passed, why);
+        return run_on(sim, 1.0, 0.0, NAN, s->options->steps, &passed, why);
     s->count++;
     bundle_init(&state);
     status result = state_save(sim, &state, why);
@@ -295,7 +310,8 @@ static void print_stage(const stage_result *r)
            r->fine.step_min, r->fine.step_max, r->limit.limit_s, r->limit.binds, (long long)llrint((double)r->fine.steps * FINE),
            r->fine.span);
     if (!isnan(r->given_factor))
-        printf("  step_s of the scene is %.4g s, %.3g times auto's at the start\n", r->stage->step_s, r->given_factor);
+        printf("  step_s of the scene is %.4g s, %.3g times auto's at the start: %s%s\n", r->stage->step_s, r->given_factor,
+               r->given_stable ? "stable" : "not stable: ", r->given_text);
     if (r->bounded)
         printf("  safety factor %.3g: stable up to %.4g s, not at %.3g times auto's step (%s)\n", r->factor, r->factor * r->fine.step_min,
                r->unstable_factor, r->past);
@@ -322,6 +338,7 @@ static json_t *stage_json(const stage_result *r)
         json_object_set_new(entry, "steps", json_integer(llrint((double)r->fine.steps * FINE)));
         json_object_set_new(entry, "step_s", number(r->stage->step_s));
         json_object_set_new(entry, "step_over_auto", number(r->given_factor));
+        json_object_set_new(entry, "step_is_stable", isnan(r->given_factor) ? json_null() : json_boolean(r->given_stable));
         json_object_set_new(entry, "safety_factor", number(r->factor));
         json_object_set_new(entry, "unstable_factor", r->bounded ? number(r->unstable_factor) : json_null());
         json_object_set_new(entry, "past_it", r->bounded ? json_string(r->past) : json_null());

@@ -20,8 +20,8 @@
 #include <time.h>
 
 #define LINES_MAX 64
-#define STEPS 600
-#define LOOK  100
+#define STEPS     600
+#define LOOK      100
 
 /* ---- random numbers ---- */
 
@@ -100,19 +100,19 @@ static const struct {
     double low, high;
     bool even;
 } ranges[] = {
-    {"density_kg_m3", 2.5, 4.0, false},         {"youngs_modulus_pa", 6.0, 11.0, false},     {"poissons_ratio", 0.0, 0.49, true},
-    {"conductivity_w_mk", -2.0, 2.5, false},    {"specific_heat_j_kgk", 0.0, 3.0, false},    {"film_thickness_m", -8.0, -5.0, false},
-    {"real_modulus_pa", 10.0, 11.5, false},     {"heat_generation_w_m3", 2.0, 7.0, false},   {"softening_temperature_k", 200, 600, true},
-    {"softening_rate", 0.0, 5.0, true},         {"modulus_floor_pa", 4.0, 6.0, false},       {"restitution", 0.05, 1.0, true},
-    {"normal_damping_ratio", 0.0, 1.5, true},   {"friction_static", 0.0, 1.5, true},         {"friction_dynamic", 0.0, 1.0, true},
-    {"rolling_friction", 0.0, 0.5, true},       {"normal_stiffness_n_m", 2.0, 6.0, false},   {"tangential_stiffness_n_m", 2.0, 5.0, false},
-    {"repulsion_stiffness", 7.0, 9.0, false},   {"repulsion_exponent", 1.0, 2.0, true},      {"bond_stiffness", 1.0, 4.0, false},
-    {"bond_equilibrium_overlap_m", -8, -5.5, 0}, {"bond_normalised_stiffness_n", -1, 1, 0},  {"bond_equilibrium_strain", -4, -2, 0},
-    {"bond_exponent", 0.5, 1.2, true},          {"bond_threshold", 250, 450, true},          {"bond_tensile_strength_pa", 4.0, 7.0, false},
+    {"density_kg_m3", 2.5, 4.0, false},          {"youngs_modulus_pa", 6.0, 11.0, false},     {"poissons_ratio", 0.0, 0.49, true},
+    {"conductivity_w_mk", -2.0, 2.5, false},     {"specific_heat_j_kgk", 0.0, 3.0, false},    {"film_thickness_m", -8.0, -5.0, false},
+    {"real_modulus_pa", 10.0, 11.5, false},      {"heat_generation_w_m3", 2.0, 7.0, false},   {"softening_temperature_k", 200, 600, true},
+    {"softening_rate", 0.0, 5.0, true},          {"modulus_floor_pa", 4.0, 6.0, false},       {"restitution", 0.05, 1.0, true},
+    {"normal_damping_ratio", 0.0, 1.5, true},    {"friction_static", 0.0, 1.5, true},         {"friction_dynamic", 0.0, 1.0, true},
+    {"rolling_friction", 0.0, 0.5, true},        {"normal_stiffness_n_m", 2.0, 6.0, false},   {"tangential_stiffness_n_m", 2.0, 5.0, false},
+    {"repulsion_stiffness", 7.0, 9.0, false},    {"repulsion_exponent", 1.0, 2.0, true},      {"bond_stiffness", 1.0, 4.0, false},
+    {"bond_equilibrium_overlap_m", -8, -5.5, 0}, {"bond_normalised_stiffness_n", -1, 1, 0},   {"bond_equilibrium_strain", -4, -2, 0},
+    {"bond_exponent", 0.5, 1.2, true},           {"bond_threshold", 250, 450, true},          {"bond_tensile_strength_pa", 4.0, 7.0, false},
     {"bond_shear_strength_pa", 4.0, 7.0, false}, {"bond_youngs_modulus_pa", 6.0, 9.0, false}, {"bond_shear_modulus_pa", 6.0, 9.0, false},
-    {"bond_radius_ratio", 0.1, 1.0, true},      {"bond_gap_ratio", -6.0, -1.5, false},       {"work_of_adhesion_j_m2", -4.0, -0.5, false},
-    {"expansion_1_k", -6.0, -4.0, false},       {"reference_temperature_k", 200, 400, true}, {"bond_damping_ratio", 0.0, 1.5, true},
-    {"tangential_damping_ratio", 0, 1.5, true}, {"rolling_damping_ratio", 0, 1.5, true},
+    {"bond_radius_ratio", 0.1, 1.0, true},       {"bond_gap_ratio", -6.0, -1.5, false},       {"work_of_adhesion_j_m2", -4.0, -0.5, false},
+    {"expansion_1_k", -6.0, -4.0, false},        {"reference_temperature_k", 200, 400, true}, {"bond_damping_ratio", 0.0, 1.5, true},
+    {"tangential_damping_ratio", 0, 1.5, true},  {"rolling_damping_ratio", 0, 1.5, true},
 };
 
 static double draw(const char *key, double low, double high, double fallback, uint64_t *state)
@@ -129,7 +129,8 @@ static double draw(const char *key, double low, double high, double fallback, ui
 /* Properties of which a pair gives only one. */
 static bool left_out(const char *key, uint64_t *state, const char *bond, const char *damping)
 {
-    static const char *const bonds[] = {"bond_stiffness", "bond_equilibrium_overlap_m", "bond_normalised_stiffness_n", "bond_equilibrium_strain"};
+    static const char *const bonds[] = {"bond_stiffness", "bond_equilibrium_overlap_m", "bond_normalised_stiffness_n",
+                                        "bond_equilibrium_strain"};
     for (int k = 0; k < 4; k++)
         if (strcmp(key, bonds[k]) == 0)
             return strcmp(key, bond) != 0;
@@ -142,12 +143,14 @@ static bool left_out(const char *key, uint64_t *state, const char *bond, const c
 
 static void put_properties(char *text, size_t size, const property *const *list, uint64_t *state)
 {
-    static const char *const bonds[] = {"bond_stiffness", "bond_equilibrium_overlap_m", "bond_normalised_stiffness_n", "bond_equilibrium_strain"};
+    static const char *const bonds[] = {"bond_stiffness", "bond_equilibrium_overlap_m", "bond_normalised_stiffness_n",
+                                        "bond_equilibrium_strain"};
     const char *bond = bonds[below(state, 4)], *damping = chance(state, 0.5) ? "restitution" : "normal_damping_ratio";
     for (; *list; list++) {
         size_t used = strlen(text);
         if (!left_out((*list)->key, state, bond, damping))
-            snprintf(text + used, size - used, ", %s: %.6g", (*list)->key, draw((*list)->key, (*list)->low, (*list)->high, (*list)->fallback, state));
+            snprintf(text + used, size - used, ", %s: %.6g", (*list)->key,
+                     draw((*list)->key, (*list)->low, (*list)->high, (*list)->fallback, state));
     }
 }
 
@@ -191,7 +194,8 @@ static void put_effect(lines *t, slot_id slot, uint64_t *shape, uint64_t *state)
             put_option(text, sizeof text, o, shape, state);
     if (slot == SLOT_SOURCE)
         snprintf(text + strlen(text), sizeof text - strlen(text),
-                 ", name: beam, diameter_m: %.6g, direction: [%.3f, 0.1, -1]%s, path: {time_s: [0, 0.01], position_m: [[0, 0, 0], [0.01, 0.01, 0]], power_w: [%.6g, 0]}",
+                 ", name: beam, diameter_m: %.6g, direction: [%.3f, 0.1, -1]%s, path: {time_s: [0, 0.01], position_m: [[0, 0, 0], [0.01, "
+                 "0.01, 0]], power_w: [%.6g, 0]}",
                  decades(state, -3.5, -1.5), uniform(state, -0.5, 0.5), strcmp(one->name, "burner") == 0 ? ", depth_max_m: 2.0e-3" : "",
                  decades(state, -4.0, 0.0));
     put(t, "  - {slot: %s, law: %s%s}", slot_name(slot), one->name, text);
@@ -207,14 +211,20 @@ static void put_walls(lines *t, bool periodic, uint64_t *shape, uint64_t *state)
     if (periodic)
         put(t, "  - {name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]%s}", heat);
     else
-        put(t, "  - {name: box, shape: box, low_m: [0, 0, 0], high_m: [0.01, 0.01, 0.02]%s%s}", heat, chance(shape, 0.5) ? ", open: [z_high]" : "");
+        put(t, "  - {name: box, shape: box, low_m: [0, 0, 0], high_m: [0.01, 0.01, 0.02]%s%s}", heat,
+            chance(shape, 0.5) ? ", open: [z_high]" : "");
     if (chance(shape, 0.3))
-        put(t, "  - {name: plate, shape: disc, center_m: [0.005, 0.005, 0.001], radius_m: 0.003, normal: [0, 0.2, 1], motion: [{type: sinusoid, direction: [0, 0, 1], amplitude_m: %.6g, frequency_hz: %.6g}]}",
+        put(t,
+            "  - {name: plate, shape: disc, center_m: [0.005, 0.005, 0.001], radius_m: 0.003, normal: [0, 0.2, 1], motion: [{type: "
+            "sinusoid, direction: [0, 0, 1], amplitude_m: %.6g, frequency_hz: %.6g}]}",
             decades(state, -6.0, -3.3), decades(state, 0.0, 2.0));
     if (!periodic && chance(shape, 0.2))
-        put(t, "  - {name: tube, shape: cylinder, side: inside, axis_point_m: [0.005, 0.005, -0.01], axis: [0, 0, 1], radius_m: 0.0051, length_m: 0.05}");
+        put(t, "  - {name: tube, shape: cylinder, side: inside, axis_point_m: [0.005, 0.005, -0.01], axis: [0, 0, 1], radius_m: 0.0051, "
+               "length_m: 0.05}");
     if (chance(shape, 0.15))
-        put(t, "  - {name: lid, shape: plane, point_m: [0, 0, 0.02], normal: [0, 0, -1], servo: {direction: [0, 0, -1], pressure_pa: %.6g, speed_max_m_s: 0.5, area_m2: 1.0e-4}}",
+        put(t,
+            "  - {name: lid, shape: plane, point_m: [0, 0, 0.02], normal: [0, 0, -1], servo: {direction: [0, 0, -1], pressure_pa: %.6g, "
+            "speed_max_m_s: 0.5, area_m2: 1.0e-4}}",
             decades(state, 0.0, 3.0));
 }
 
@@ -224,12 +234,19 @@ static void put_particles(lines *t, uint64_t *shape, uint64_t *state, int materi
     double mean = decades(state, -3.5, -3.0);
     put(t, "particles:");
     for (int g = 0; g <= two; g++) {
-        const char *thermal = !g ? "" : chance(shape, 0.2) ? ", thermal: flux, heat_flux_w: 1.0e-4" : chance(shape, 0.2) ? ", motion: fixed" : "";
+        const char *thermal = !g                   ? ""
+                              : chance(shape, 0.2) ? ", thermal: flux, heat_flux_w: 1.0e-4"
+                              : chance(shape, 0.2) ? ", motion: fixed"
+                                                   : "";
         char radius[128];
-        snprintf(radius, sizeof radius, spread ? "{distribution: uniform, low: %.6g, high: %.6g}" : "%.6g", mean, mean * uniform(state, 1.1, 3.0));
-        put(t, "  - {name: g%d, material: m%d, generator: random, count: %d, radius_m: %s, region: {low_m: [0, 0, %g], high_m: [0.01, 0.01, %g]}, velocity_m_s: [%.3f, %.3f, %.3f], spin_rad_s: [%.1f, %.1f, %.1f], temperature_k: %.1f%s}",
-            g, g % materials, 2 + below(state, 12), radius, g * 0.01, g * 0.01 + 0.009, uniform(state, -1, 1), uniform(state, -1, 1), uniform(state, -1, 1),
-            uniform(state, -100, 100), uniform(state, -100, 100), uniform(state, -100, 100), uniform(state, 100, 600), thermal);
+        snprintf(radius, sizeof radius, spread ? "{distribution: uniform, low: %.6g, high: %.6g}" : "%.6g", mean,
+                 mean * uniform(state, 1.1, 3.0));
+        put(t,
+            "  - {name: g%d, material: m%d, generator: random, count: %d, radius_m: %s, region: {low_m: [0, 0, %g], high_m: [0.01, 0.01, "
+            "%g]}, velocity_m_s: [%.3f, %.3f, %.3f], spin_rad_s: [%.1f, %.1f, %.1f], temperature_k: %.1f%s}",
+            g, g % materials, 2 + below(state, 12), radius, g * 0.01, g * 0.01 + 0.009, uniform(state, -1, 1), uniform(state, -1, 1),
+            uniform(state, -1, 1), uniform(state, -100, 100), uniform(state, -100, 100), uniform(state, -100, 100),
+            uniform(state, 100, 600), thermal);
     }
 }
 
@@ -249,7 +266,8 @@ static void make(uint64_t structure, uint64_t numbers, lines *t)
     uint64_t shape = structure * 7919u + 13u, state = numbers * 104729u + structure;
     bool periodic = chance(&shape, 0.25);
     int materials = chance(&shape, 0.3) ? 2 : 1;
-    static const char *const gases[] = {"conductivity_w_mk: 0.025", "specific_heat_j_kgk: 1000", "viscosity_pa_s: 1.8e-5", "density_kg_m3: 1.2"};
+    static const char *const gases[] = {"conductivity_w_mk: 0.025", "specific_heat_j_kgk: 1000", "viscosity_pa_s: 1.8e-5",
+                                        "density_kg_m3: 1.2"};
     put(t, "seed: %d", 1 + below(&state, 1000000));
     put(t, "precision: %s", chance(&shape, 0.5) ? "mixed" : "double");
     put(t, "integrator: %s", chance(&shape, 0.3) ? "velocity_verlet" : "semi_implicit_euler");
@@ -388,7 +406,8 @@ static status look(fuzz_case *c, outcome *o, failure *why)
     /* collisions may be sampled as coarsely as ten steps each: what a contact stores then is out by some per cent of what moves */
     double moving = sums.kinetic + sums.rotational + g * sums.weight_radius;
     if (c->keeps_energy && c->sim->stage == 0 && energy > c->energy + 0.3 * fmax(moving, fabs(c->energy)) + eps)
-        broken(o, "energy", "energy has risen from %.6g to %.6g J at step %lld (%.3g of it in motion)", c->energy, energy, (long long)c->sim->step, moving);
+        broken(o, "energy", "energy has risen from %.6g to %.6g J at step %lld (%.3g of it in motion)", c->energy, energy,
+               (long long)c->sim->step, moving);
     for (int k = 0; k < 3 && c->keeps_momentum && c->sim->stage == 0; k++) {
         double expected = c->momentum[k] + sums.mass * c->sim->gravity[k] * c->sim->time;
         double scale = c->impulse + sums.mass * g * c->sim->time + sqrt(2.0 * sums.mass * sums.kinetic);
@@ -403,8 +422,8 @@ static status look(fuzz_case *c, outcome *o, failure *why)
         broken(o, "temperatures", "temperatures run from %.6g to %.6g K at step %lld", heat.lowest, heat.highest, (long long)c->sim->step);
     double slack = eps * c->high + (c->sim->stage ? 1e-4 * (c->high - c->low) : 0.0); /* frozen stages are exact to their tolerance */
     if (c->keeps_range && (heat.lowest < c->low - slack || heat.highest > c->high + slack))
-        broken(o, "temperatures", "temperatures run from %.9g to %.9g K at step %lld, and began between %.9g and %.9g", heat.lowest, heat.highest,
-               (long long)c->sim->step, c->low, c->high);
+        broken(o, "temperatures", "temperatures run from %.9g to %.9g K at step %lld, and began between %.9g and %.9g", heat.lowest,
+               heat.highest, (long long)c->sim->step, c->low, c->high);
     return STATUS_OK;
 }
 
@@ -606,6 +625,7 @@ int main(int argc, char **argv)
     double seconds = INFINITY;
     const char *folder = ".";
     int counts[4] = {0}, failed = 0;
+    setvbuf(stdout, NULL, _IOLBF, 0);
     if (device_open(NULL, true, &the_device, &why) != STATUS_OK) {
         fprintf(stderr, "%s\n", why.text);
         return 3;
@@ -629,8 +649,8 @@ int main(int argc, char **argv)
     for (uint64_t s = seed; s < seed + structures && difftime(time(NULL), start) < seconds; s++)
         for (uint64_t n = 1; n <= sets && difftime(time(NULL), start) < seconds; n++)
             failed += !one_scene(s, n, folder, counts);
-    printf("%d scenes kept the invariants, %d were refused, %d were stopped by a guard, %d broke an invariant\n", counts[KEPT], counts[REFUSED], counts[STOPPED],
-           counts[BROKEN]);
+    printf("%d scenes kept the invariants, %d were refused, %d were stopped by a guard, %d broke an invariant\n", counts[KEPT],
+           counts[REFUSED], counts[STOPPED], counts[BROKEN]);
     char running[4096];
     snprintf(running, sizeof running, "%s/fuzz-running.yaml", folder);
     remove(running);
