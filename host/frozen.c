@@ -133,8 +133,10 @@ status frozen_link(simulation *sim, failure *why)
     TRY(fit_arrays(sim, why));
     TRY(find_given(sim, why));
     TRY(find_links(sim, why));
-    if (sim->heat.vary)
+    if (sim->heat.vary && sim->heat.rows < ROWS) { /* fewer would not do for the batches of a stage that moves */
         TRY(heat_fit_rows(sim, ROWS, why));
+        TRY(launch_bind_stages(sim, why)); /* the stages read these arrays as well */
+    }
     sim->frozen.linked = true;
     return STATUS_OK;
 }

@@ -624,7 +624,7 @@ int main(int argc, char **argv)
     uint64_t seed = 1, structures = 3, sets = 12;
     double seconds = INFINITY;
     const char *folder = ".";
-    int counts[4] = {0}, failed = 0;
+    int counts[4] = {0}, failed = 0, files = 0;
     setvbuf(stdout, NULL, _IOLBF, 0);
     if (device_open(NULL, true, &the_device, &why) != STATUS_OK) {
         fprintf(stderr, "%s\n", why.text);
@@ -643,8 +643,10 @@ int main(int argc, char **argv)
         else if (strcmp(argv[k], "--out") == 0)
             folder = value, k++;
         else
-            return run_file(argv[k]);
+            failed += run_file(argv[k]) != 0, files++;
     }
+    if (files > 0)
+        return failed > 0;
     time_t start = time(NULL);
     for (uint64_t s = seed; s < seed + structures && difftime(time(NULL), start) < seconds; s++)
         for (uint64_t n = 1; n <= sets && difftime(time(NULL), start) < seconds; n++)
