@@ -103,6 +103,24 @@ static status check_overlaps(simulation *sim, guard_finding *out, failure *why)
     return STATUS_OK;
 }
 
+static status check_temperatures(simulation *sim, guard_finding *out, failure *why)
+{
+    heat_sums heat;
+    double *temperature = NULL;
+    if (!sim->live.law[SLOT_TEMPERATURE] || sim->count < sim->id_count) /* rows of grains that have left are no numbers either */
+        return STATUS_OK;
+    TRY(heat_observe(sim, &heat, why));
+    if (isfinite(heat.mean))
+        return STATUS_OK;
+    TRY(observe_field(sim, "temperature", &temperature, why));
+    int32_t id = 0;
+    while (id < sim->id_count - 1 && isfinite(temperature[id]))
+        id++;
+    free(temperature);
+    stop(sim, out, id, "temperature is not a number", "try a smaller step, and look at the properties that heat it");
+    return STATUS_OK;
+}
+
 status guard_check(simulation *sim, guard_finding *out, failure *why)
 {
     out->stop = false;
@@ -110,5 +128,7 @@ status guard_check(simulation *sim, guard_finding *out, failure *why)
     if (out->stop)
         return STATUS_OK;
     TRY(check_grains(sim, out, why));
+    if (!out->stop)
+        TRY(check_temperatures(sim, out, why));
     return out->stop ? STATUS_OK : check_overlaps(sim, out, why);
 }
