@@ -151,8 +151,8 @@ static void overlapping(const char *precision)
 {
     physics_case c = hard_open("overlapping", precision, NULL);
     double elastic = case_contact_sums(&c).elastic, most = 0.0;
-    for (int k = 0; k < 100; k++) {
-        hard_auto(&c, k < 50 ? 1 : 60, 1.0);
+    for (int k = 0; c.sim->time < 0.004; k++) {
+        hard_auto(&c, k < 50 ? 1 : 200, 1.0);
         most = fmax(most, case_sums(&c).kinetic);
     }
     hard_margin("overlap of half a radius, damped", precision, "largest kinetic energy over the elastic one of the start", most / elastic,
