@@ -621,11 +621,11 @@ status simulation_count_leavers(simulation *sim, int64_t kept, failure *why)
 }
 
 /* The skin that balances the pairs it adds against the tables it saves, for grains that travel `used` a step (docs/performance.md): a step
- * costs about 1 + 2.7 s/r in a dense bed and less in a loose one, a table about 8 steps, and it lasts s/(2 used) steps; the factor leans to
+ * costs about 1 + 2.7 s/r in a dense bed and less in a loose one, a table about 10 steps, and it lasts s/(2 used) steps; the factor leans to
  * the side of few tables, since it is the fast and loose beds that need many. */
 static double best_skin(const simulation *sim, double used)
 {
-    double best = fmin(fmax(sqrt(14.0 * used * sim->mean_radius), 0.02 * sim->mean_radius), 1.4 * sim->mean_radius);
+    double best = fmin(fmax(sqrt(17.0 * used * sim->mean_radius), 0.02 * sim->mean_radius), 1.4 * sim->mean_radius);
     const domain *d = &sim->scene->domain;
     for (int c = 0; d->given && c < 3; c++)
         if (d->periodic[c])
