@@ -65,10 +65,10 @@ static status check_table(reader *r, int node, const quantity *q, const char *ke
     return STATUS_OK;
 }
 
-static status read_table(reader *r, const parameter *row, int node, int components, bool in_time, bool in_space, quantity *out)
+static status take_table(reader *r, const parameter *row, int node, int components, bool in_time, bool in_space, table_keys *read, quantity *out)
 {
-    table_keys keys = {0};
-    TRY(parameter_section(r, &quantity_section, node, &keys));
+    TRY(parameter_section(r, &quantity_section, node, read));
+    const table_keys keys = *read;
     bool space = keys.axis_given || keys.at_m;
     if (keys.time_s && space)
         return document_fail(r->document, node, r->why, "`%s` is a table in time (`time_s`) or along an axis (`axis` and `at_m`), not both",
@@ -89,6 +89,17 @@ static status read_table(reader *r, const parameter *row, int node, int componen
     out->count = space ? keys.at_count : keys.time_count;
     TRY(check_table(r, node, out, space ? "at_m" : "time_s"));
     return read_table_values(r, row, node, components, out);
+}
+
+static status read_table(reader *r, const parameter *row, int node, int components, bool in_time, bool in_space, quantity *out)
+{
+    table_keys keys = {0};
+    status result = take_table(r, row, node, components, in_time, in_space, &keys, out);
+    if (!out->at) {
+        free(keys.time_s);
+        free(keys.at_m);
+    }
+    return result;
 }
 
 static status read_quantity(reader *r, const parameter *row, int node, int components, bool in_time, bool in_space, void *target)

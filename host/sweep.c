@@ -72,9 +72,9 @@ static status read_axis(const char *text, axis *out, failure *why)
     out->path = strndup(text, (size_t)(equals - text) + 1);
     for (const char *at = equals + 1;;) {
         size_t length = value_length(at);
-        char **value = realloc(out->value, sizeof *value * (size_t)(out->count + 1));
         if (length == 0)
             return fail(why, STATUS_BAD_INPUT, "--sweep %s: value %d is empty; write PATH=A,B,C", text, out->count + 1);
+        char **value = realloc(out->value, sizeof *value * (size_t)(out->count + 1));
         if (!value || !out->path)
             return fail(why, STATUS_ERROR, "out of memory");
         out->value = value;
