@@ -202,13 +202,6 @@ static void define_block(const simulation *sim, char *text, size_t size)
         snprintf(text + used, size - used, "#define CLAST_BLOCK %d\n", sim->block);
 }
 
-/* Numbers in the device's widest register. */
-static int lanes(const simulation *sim)
-{
-    int floats = (int)sim->device->info.float_lanes;
-    return sim->mixed || floats < 2 ? floats : floats / 2;
-}
-
 status launch_open(simulation *sim, failure *why)
 {
     const char *files[FILES_MAX], *table_files[LIVE_TABLE_FILES];
@@ -218,13 +211,8 @@ status launch_open(simulation *sim, failure *why)
     define_block(sim, table_constants, sizeof table_constants);
     define_block(sim, constants, sizeof constants);
     int count = live_files(&sim->live, files, FILES_MAX - 1);
-    size_t used = strlen(constants);
-    if (sim->live.blocks)
-        used += (size_t)snprintf(constants + used, sizeof constants - used, "#define LANES %d\n", lanes(sim));
-    if (step_loop_wanted(sim)) {
+    if (step_loop_wanted(sim))
         files[count++] = "stage/step_loop.cl";
-        snprintf(constants + used, sizeof constants - used, "#define LOOP_ITEMS %d\n", step_loop_items(sim));
-    }
     TRY(open_program(sim, constants, files, count, &sim->program, why));
     TRY(open_program(sim, table_constants, table_files, live_table_files(&sim->live, table_files), &sim->table_program, why));
     static const char *const names[] = {"pair_stage",       "pair_probe",      "particle_stage",    "scan_chunks",       "scan_sums",

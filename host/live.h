@@ -11,6 +11,8 @@ typedef struct live_laws {
     bool frozen; /* nothing moves: heat advances by methods of its own */
     bool servo; /* some wall keeps a force, in some stage */
     bool blocks; /* a work-item of the two stages takes a block instead of one record or grain: the form for CPUs */
+    int lanes;   /* numbers in the device's widest register; 0: not known */
+    int loop_items; /* work-items of the loop over steps; 0: one */
 } live_laws;
 
 /* The union over all stages, which decides what is allocated. */

@@ -4,10 +4,7 @@
  * A CPU gathers one number at a time, and a record needs some twenty of its two grains. So a block reads its grains first, three numbers of a
  * grain with one load, and turns them into rows: one number of 64 records side by side, which the loop reads in order. And it asks for the
  * grains of a block to come, because the loop leaves no room to wait for them. The particle stage gathers the forces on its grains into rows. */
-/* Numbers in the widest register of the device (host/launch.c). */
-#ifndef LANES
-#define LANES 4
-#endif
+/* LANES: numbers in the widest register of the device (host/live.c). */
 #define VECTOR_LOOP _Pragma("clang loop vectorize(assume_safety) vectorize_width(LANES)")
 #define BLOCKS_AHEAD 3
 /* Rows of one of the two grains: numbers that are wanted with all their bits take EXACT_REALS rows. */

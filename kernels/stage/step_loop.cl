@@ -1,10 +1,6 @@
 /* Many steps in one work-group, for beds so small that launches would cost more than the work: both stages by the bodies that the two kernels
  * run, barriers between them. The group has LOOP_ITEMS work-items. On a CPU that is one (pocl does not vectorise between barriers that stand in a
  * loop); on a GPU they fill a multiprocessor. Halts exactly as the two kernels do. */
-#ifndef LOOP_ITEMS
-#define LOOP_ITEMS 1
-#endif
-
 /* A stage's arguments under names of its own: what both stages use stands twice in the signature, and neither sees the other's. */
 #define DECLARE_LOOP_PAIR(type, name) , __global type *pair_##name
 #define DECLARE_LOOP_PARTICLE(type, name) , __global type *particle_##name
