@@ -46,7 +46,7 @@ void frozen_restart(simulation *sim)
 static void release_arrays(simulation *sim)
 {
     frozen_heat *f = &sim->frozen;
-    cl_mem *const grains[] = {&f->given, &f->start, &f->zero, &f->error, &f->rates, &f->rises[0], &f->rises[1], &f->rises[2]};
+    cl_mem *const grains[] = {&f->given, &f->start, &f->begin, &f->zero, &f->error, &f->rates, &f->rises[0], &f->rises[1], &f->rises[2]};
     store_release(sim, &f->link, f->link_bytes);
     store_release(sim, &f->conductance, f->link_bytes);
     for (size_t k = 0; k < sizeof grains / sizeof *grains; k++)
@@ -65,7 +65,7 @@ static status fit_arrays(simulation *sim, failure *why)
 {
     frozen_heat *f = &sim->frozen;
     uint64_t links = 8 * (uint64_t)sim->table.slots_held[sim->table.now], grains = 8 * (uint64_t)sim->stride;
-    if (f->link && f->link_bytes >= links)
+    if (f->link && f->link_bytes >= links && (f->begin || !frozen_follows(sim)))
         return STATUS_OK;
     release_arrays(sim);
     frozen_solve_free(sim);
@@ -76,6 +76,8 @@ static status fit_arrays(simulation *sim, failure *why)
     cl_mem *const arrays[] = {&f->given, &f->start, &f->zero, &f->error, &f->rates, &f->rises[0], &f->rises[1], &f->rises[2]};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         TRY(store_buffer(sim, arrays[k], grains, "steps of heat", why));
+    if (frozen_follows(sim))
+        TRY(store_buffer(sim, &f->begin, grains, "rates at the start of a step", why));
     if (sim->all.law[SLOT_HEAT_TALLY])
         TRY(store_buffer(sim, &f->kept, 6 * grains, "heat by path of a step", why));
     return store_fill(sim, f->zero, grains, why);
@@ -112,11 +114,6 @@ static status find_links(simulation *sim, failure *why)
     TRY(launch_run(sim, records, "heat_conductances", t->record_count, sim->block, why));
     TRY(launch_set(links, "heat_frozen_links", why, "Lmmmm", &launch, t->owner[t->now], t->other[t->now], f->link, f->conductance));
     return frozen_run_grains(sim, "heat_frozen_links", 5, why);
-}
-
-bool frozen_follows(const simulation *sim)
-{
-    return sim->live.law[SLOT_CONDUCTION] && (sim->live.law[SLOT_CONDUCTIVITY] || sim->live.law[SLOT_RADIUS]);
 }
 
 /* One evaluation of the pairs gives all that the contacts do while nothing moves. */
@@ -185,7 +182,7 @@ static status find_interval(simulation *sim, failure *why)
     return STATUS_OK;
 }
 
-static status find_limit(simulation *sim, failure *why)
+status frozen_find_limit(simulation *sim, failure *why)
 {
     frozen_heat *f = &sim->frozen;
     clast_launch launch = launch_values(sim);
@@ -215,7 +212,7 @@ static status keep_limit(simulation *sim, failure *why)
         return STATUS_OK;
     if (isnan(f->hottest) || f->high > f->hottest)
         f->hottest = frozen_is_heated(sim) ? 1.1 * f->high : f->high;
-    return find_limit(sim, why);
+    return frozen_find_limit(sim, why);
 }
 
 status frozen_limit(simulation *sim, double *out, failure *why)
@@ -224,7 +221,7 @@ status frozen_limit(simulation *sim, double *out, failure *why)
     TRY(find_interval(sim, why));
     if (isnan(sim->frozen.hottest))
         sim->frozen.hottest = frozen_is_heated(sim) ? 1.1 * sim->frozen.high : sim->frozen.high;
-    TRY(find_limit(sim, why));
+    TRY(frozen_find_limit(sim, why));
     *out = sim->frozen.limit;
     return STATUS_OK;
 }
@@ -365,7 +362,7 @@ static status look_at_step(simulation *sim, const scheme *c, double step, frozen
     cl_kernel error = launch_kernel(sim, "heat_frozen_error");
     launch.heat_row = sim->heat.vary ? c->stages : 0;
     TRY(frozen_set_network(sim, error, "heat_frozen_error", &launch, rises, why));
-    TRY(launch_set_from(error, "heat_frozen_error", 6, why, sim->mixed ? "mmmf" : "mmmd", f->start, f->error, f->rates, step));
+    TRY(launch_set_from(error, "heat_frozen_error", 6, why, sim->mixed ? "mmmf" : "mmmd", frozen_rates_at_start(sim), f->error, f->rates, step));
     TRY(frozen_run_grains(sim, "heat_frozen_error", 10, why));
     return frozen_fold(sim, rises, f->error, f->rates, out, why);
 }
@@ -374,6 +371,8 @@ status frozen_accept(simulation *sim, cl_mem rises, int row, bool all, failure *
 {
     clast_launch launch = launch_values(sim);
     cl_kernel kernel = launch_kernel(sim, "heat_frozen_accept");
+    if (frozen_follows(sim)) /* growth counts from the radii at the start */
+        TRY(frozen_probe(sim, sim->frozen.zero, 1.0, why));
     launch.heat_row = sim->heat.vary ? row : 0;
     TRY(launch_set(kernel, "heat_frozen_accept", why, "Lmmi", &launch, rises, sim->frozen.kept, (cl_int)all));
     return frozen_run_grains(sim, "heat_frozen_accept", 4, why);
@@ -435,6 +434,32 @@ double frozen_fit_step(double step, double left)
     return step > 0.5 * left ? 0.5 * left : step;
 }
 
+static status run_rkl2(simulation *sim, scheme *c, double step, failure *why)
+{
+    rkl2(c, stages_for(step, sim->frozen.limit));
+    TRY(frozen_write_rows(sim, c->place, c->stages + 1, step, why));
+    return run_stages(sim, c, step, why);
+}
+
+/* Where conductances follow the temperatures, the step is taken with those of its start to find those of its middle, then with these. Its error
+ * is looked at with the conductances of either end. *possible: not more stages than there may be, and no grain outgrows the table. */
+static status try_step(simulation *sim, scheme *c, double step, frozen_findings *found, bool *possible, failure *why)
+{
+    *possible = true;
+    TRY(run_rkl2(sim, c, step, why));
+    if (frozen_follows(sim)) {
+        TRY(frozen_keep_start(sim, why));
+        TRY(frozen_look_up(sim, sim->frozen.rises[c->stages % 3], 0.5, why));
+        *possible = step <= longest_step(sim->frozen.limit);
+        if (!*possible)
+            return STATUS_OK;
+        TRY(run_rkl2(sim, c, step, why));
+        TRY(frozen_look_up(sim, sim->frozen.rises[c->stages % 3], 1.0, why));
+        TRY(frozen_fits_table(sim, possible, why));
+    }
+    return look_at_step(sim, c, step, found, why);
+}
+
 /* One step of RKL2 that meets the tolerance and the interval. The error of a step goes as its cube. */
 static status stabilised_step(simulation *sim, double until, failure *why)
 {
@@ -446,11 +471,9 @@ static status stabilised_step(simulation *sim, double until, failure *why)
         f->next = isfinite(f->limit) ? f->limit : left;
     for (;;) {
         double step = frozen_fit_step(fmin(f->next, longest_step(f->limit)), left);
-        rkl2(&c, stages_for(step, f->limit));
-        TRY(frozen_write_rows(sim, c.place, c.stages + 1, step, why));
-        TRY(run_stages(sim, &c, step, why));
-        TRY(look_at_step(sim, &c, step, &found, why));
-        bool inside = frozen_is_inside(sim, &found);
+        bool possible;
+        TRY(try_step(sim, &c, step, &found, &possible, why));
+        bool inside = possible && frozen_is_inside(sim, &found);
         double growth = found.error > 0.0 ? 0.8 * cbrt(allowed / found.error) : 5.0;
         if (found.error <= allowed && inside) {
             double next = step * fmin(growth, 5.0);
@@ -458,27 +481,24 @@ static status stabilised_step(simulation *sim, double until, failure *why)
             return accept(sim, &c, step, step == left ? until : sim->time + step, &found, why);
         }
         f->rejected++;
+        TRY(frozen_take_back(sim, why));
         f->next = step * (inside ? fmax(fmin(growth, 0.8), 0.1) : 0.5);
         if (f->next < 1e-6 * fmin(f->limit, left))
             return frozen_give_up(sim, step, &found, why);
     }
 }
 
-/* Conductances that follow the temperatures are those of the start of a step; so no temperature may change by more than this share of the range. */
+/* Under Euler's method conductances are those of the start of a step; so no temperature may change by more than this share of the range. */
 #define FOLLOWING_SHARE 0.01
 
-static status relink(simulation *sim, double *until, failure *why)
+static status follow_by_euler(simulation *sim, double *until, failure *why)
 {
     frozen_heat *f = &sim->frozen;
-    if (!frozen_follows(sim))
+    if (!frozen_follows(sim) || frozen_stage(sim)->heat_method != HEAT_EXPLICIT)
         return STATUS_OK;
-    f->linked = false;
-    TRY(frozen_link(sim, why));
-    if (frozen_stage(sim)->heat_method == HEAT_STEADY)
-        return STATUS_OK;
-    TRY(find_limit(sim, why));
+    TRY(frozen_take_back(sim, why));
     double range = fmax(f->high - f->low, 1e-3 * f->high), most = FOLLOWING_SHARE * range / f->rate;
-    double first = isfinite(f->rate) && f->rate > 0.0 ? most : f->limit;
+    double first = isfinite(f->rate) && f->rate > 0.0 ? most : FOLLOWING_SHARE * f->limit;
     if (isfinite(first) && sim->time + first < *until)
         *until = sim->time + first;
     return STATUS_OK;
@@ -518,8 +538,9 @@ status frozen_advance(simulation *sim, double until, int64_t most, failure *why)
         TRY(keep_limit(sim, why));
         bool endless = !isfinite(until) && !isfinite(sim->frozen.limit);
         double end = endless ? sim->time + 1.0 : until;
-        TRY(relink(sim, &end, why));
+        TRY(follow_by_euler(sim, &end, why));
         TRY(take_step(sim, end, why));
+        TRY(frozen_follow_growth(sim, why));
     }
     return STATUS_OK;
 }

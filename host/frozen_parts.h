@@ -11,8 +11,22 @@ typedef struct frozen_findings {
 const scene_stage *frozen_stage(const simulation *sim);
 /* Looks the contact network up, where it is not known. */
 status frozen_link(simulation *sim, failure *why);
-/* Conductances depend on the temperatures: of the grains that conduct, or by their growth. */
+/* Conductances, or surfaces, depend on the temperatures: by tables of conductivity, or by the grains' growth. */
 bool frozen_follows(const simulation *sim);
+/* Where they do: looks the network up as it is at a share of the rises (temperatures stay; radii and conductivities are left so), and the limit. */
+status frozen_look_up(simulation *sim, cl_mem rises, double share, failure *why);
+/* The network of the temperatures as they are, after a step that is not taken. */
+status frozen_take_back(simulation *sim, failure *why);
+/* Between steps: grains that have grown may touch others than the table knows. */
+status frozen_follow_growth(simulation *sim, failure *why);
+/* With the radii as they stand, two grains may not meet that the table does not know. */
+status frozen_fits_table(simulation *sim, bool *fits, failure *why);
+/* Keeps the rates that the first stage of a step has found, while the step is taken again with other conductances; and where they stand. */
+status frozen_keep_start(simulation *sim, failure *why);
+cl_mem frozen_rates_at_start(const simulation *sim);
+/* Radii and conductivities of the temperatures at a share of the rises; the temperatures stay. */
+status frozen_probe(simulation *sim, cl_mem rises, double share, failure *why);
+status frozen_find_limit(simulation *sim, failure *why);
 /* Something other than differences of temperature brings heat. */
 bool frozen_is_heated(const simulation *sim);
 /* Error that a step may make, K. */

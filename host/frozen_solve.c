@@ -1,6 +1,7 @@
 /* Methods that solve for temperatures (docs/theory.md, "Heat while nothing moves"): steps of SDIRK2, and the steady state. Newton's method
  * outside, conjugate gradients on the device inside. */
 #include "frozen_parts.h"
+#include "laws/laws.h"
 #include "property.h"
 
 #include <math.h>
@@ -161,12 +162,14 @@ typedef struct clusters {
     int64_t *root, links;
     int32_t *link, *fixed;
     uint32_t *slot_offset;
-    double *conductance, *sink, *capacity, *source, *temperature, *sums; /* sums: of each root: sink, capacity, content, source */
+    double *conductance, *sink, *capacity, *source, *temperature, *sums; /* sums: of each root: sink, capacity, its product with temperature, source */
+    double *end;     /* temperature that each root's cluster comes to without a sink */
+    int32_t *material;
 } clusters;
 
 static void clusters_free(clusters *c)
 {
-    void *const all[] = {c->root, c->link, c->fixed, c->slot_offset, c->conductance, c->sink, c->capacity, c->source, c->temperature, c->sums};
+    void *const all[] = {c->root, c->link, c->fixed, c->slot_offset, c->conductance, c->sink, c->capacity, c->source, c->temperature, c->sums, c->end, c->material};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++)
         free(all[k]);
 }
@@ -201,13 +204,17 @@ static status read_clusters(simulation *sim, clusters *c, failure *why)
     for (int k = 0; k < 4; k++)
         *grains[k] = malloc(sizeof(double) * n);
     c->sums = calloc(4 * n, sizeof *c->sums);
-    if (!c->root || !c->fixed || !c->link || !c->conductance || !c->sink || !c->capacity || !c->source || !c->temperature || !c->sums)
+    c->end = malloc(sizeof *c->end * n);
+    c->material = calloc(n, sizeof *c->material);
+    if (!c->end || !c->material || !c->root || !c->fixed || !c->link || !c->conductance || !c->sink || !c->capacity || !c->source || !c->temperature || !c->sums)
         return fail(why, STATUS_ERROR, "out of memory");
     TRY(store_read(sim, f->link, 0, sizeof *c->link * (size_t)c->links, c->link, why));
     TRY(store_get(sim, f->conductance, FIELD_REAL, 0, c->links, c->conductance, why));
     TRY(store_get(sim, f->residual, FIELD_REAL, 0, sim->count, c->sink, why));
     TRY(store_get(sim, f->slope, FIELD_REAL, 0, sim->count, c->capacity, why));
     TRY(store_get(sim, f->diagonal, FIELD_REAL, 0, sim->count, c->source, why));
+    if (store_find(sim, "material"))
+        TRY(store_read(sim, store_find(sim, "material")->mem, 0, sizeof *c->material * (uint64_t)sim->count, c->material, why));
     return store_get_grains(sim, store_find(sim, "temperature"), sim->count, c->temperature, why);
 }
 
@@ -230,7 +237,50 @@ static void join_clusters(const simulation *sim, clusters *c)
     }
 }
 
-/* Rises to the mean by heat capacity of clusters that have no sink, which are then fixed; one that is heated has no steady state. */
+/* What the cluster of every root would hold more than now at the temperature of `end`, J. */
+static void find_excess(const simulation *sim, clusters *c, double *excess)
+{
+    memset(excess, 0, sizeof *excess * (size_t)sim->count);
+    for (int64_t i = 0; i < sim->count; i++) {
+        int64_t root = root_of(c, i);
+        double from = c->temperature[i], mass = c->capacity[i] / specific_heat_at(sim->scene, c->material[i], from);
+        excess[root] += mass * specific_heat_between(sim->scene, c->material[i], from, c->end[root]);
+    }
+}
+
+#define HALVINGS 64
+
+/* The mean by heat capacity; where specific heats depend on temperature, the one temperature at which a cluster holds what its grains hold now,
+ * between the coldest and the hottest of them. */
+static status find_ends(const simulation *sim, clusters *c, failure *why)
+{
+    size_t n = (size_t)sim->count + 1;
+    double *excess = malloc(3 * n * sizeof *excess), *low = excess + n, *high = low + n;
+    if (!excess)
+        return fail(why, STATUS_ERROR, "out of memory");
+    for (int64_t i = 0; i < sim->count; i++) {
+        c->end[i] = c->sums[4 * i + 1] > 0.0 ? c->sums[4 * i + 2] / c->sums[4 * i + 1] : 0.0;
+        low[i] = INFINITY;
+        high[i] = 0.0;
+    }
+    for (int64_t i = 0; i < sim->count; i++) {
+        int64_t root = root_of(c, i);
+        low[root] = fmin(low[root], c->temperature[i]);
+        high[root] = fmax(high[root], c->temperature[i]);
+    }
+    bool tabled = scene_has_material_table(sim->scene, &property_specific_heat);
+    for (int k = 0; tabled && k < HALVINGS; k++) {
+        for (int64_t i = 0; i < sim->count; i++)
+            c->end[i] = 0.5 * (low[i] + high[i]);
+        find_excess(sim, c, excess);
+        for (int64_t i = 0; i < sim->count; i++)
+            *(excess[i] > 0.0 ? &high[i] : &low[i]) = c->end[i];
+    }
+    free(excess);
+    return STATUS_OK;
+}
+
+/* Rises to the end of clusters that have no sink, which are then fixed; one that is heated has no steady state. */
 static status sort_out(simulation *sim, clusters *c, cl_mem rises, failure *why)
 {
     double *rise = calloc((size_t)sim->stride, sizeof *rise);
@@ -240,7 +290,7 @@ static status sort_out(simulation *sim, clusters *c, cl_mem rises, failure *why)
         if (sum[0] > 0.0)
             continue;
         c->fixed[i] = 1;
-        rise[i] = sum[2] / sum[1] - c->temperature[i];
+        rise[i] = c->end[root_of(c, i)] - c->temperature[i];
         if (sum[3] != 0.0)
             result = fail(why, STATUS_BAD_INPUT,
                           "%s: stage %s: there is no steady state: a cluster of particles gains %.4g W and touches no wall with a temperature, nor does "
@@ -261,6 +311,9 @@ static status settle_clusters(simulation *sim, cl_mem rises, failure *why)
     status result = read_clusters(sim, &c, why);
     if (result == STATUS_OK) {
         join_clusters(sim, &c);
+        result = find_ends(sim, &c, why);
+    }
+    if (result == STATUS_OK) {
         result = sort_out(sim, &c, rises, why);
     }
     clusters_free(&c);
@@ -277,12 +330,13 @@ status frozen_steady_step(simulation *sim, double until, failure *why)
     bool timeless = isnan(frozen_stage(sim)->until_time_s), converged = false;
     double end = timeless ? sim->time : until;
     const double place[1] = {1.0};
-    cl_mem rises = f->rises[0];
-    TRY(fit_arrays(sim, why));
+    bool follows = frozen_follows(sim), settled = !follows;
+    int passes = follows ? PICARD_MAX : sim->mixed ? 3 : 1;
     TRY(frozen_write_rows(sim, place, 1, end - sim->time, why));
-    int passes = frozen_follows(sim) ? PICARD_MAX : sim->mixed ? 3 : 1;
     for (int pass = 0; pass < passes; pass++) {
         frozen_findings moved;
+        TRY(fit_arrays(sim, why));
+        cl_mem rises = f->rises[0];
         TRY(store_fill(sim, rises, f->grain_bytes, why));
         TRY(settle_clusters(sim, rises, why));
         TRY(hold(sim, rises, 0, why));
@@ -291,15 +345,18 @@ status frozen_steady_step(simulation *sim, double until, failure *why)
             TRY(store_fill(sim, f->kept, 6 * f->grain_bytes, why));
         TRY(frozen_fold(sim, rises, rises, f->zero, &moved, why));
         TRY(frozen_accept(sim, rises, 0, true, why));
-        if (frozen_follows(sim)) { /* Picard: conductances of the temperatures found, until those stand */
-            if (pass > 0 && moved.error <= (sim->mixed ? 1e-6 : 1e-11) * f->high)
+        if (follows) { /* Picard: conductances of the temperatures found, until those stand */
+            settled = pass > 0 && moved.error <= (sim->mixed ? 1e-6 : 1e-11) * f->high;
+            if (settled)
                 break;
             f->linked = false;
+            TRY(frozen_follow_growth(sim, why));
             TRY(frozen_link(sim, why));
         }
     }
-    if (!converged && !sim->mixed)
-        return fail(why, STATUS_ERROR, "%s: stage %s: no steady state was found in %d iterations", sim->scene->path, frozen_stage(sim)->name, NEWTON_MAX);
+    if (!(converged && settled) && !sim->mixed)
+        return fail(why, STATUS_ERROR, "%s: stage %s: no steady state was found in %d iterations", sim->scene->path, frozen_stage(sim)->name,
+                    converged ? PICARD_MAX : NEWTON_MAX);
     const frozen_findings none = {0.0, 0.0, f->high, f->low};
     frozen_count_step(sim, end > sim->time ? end - sim->time : sim->dt, end, &none);
     return STATUS_OK;
@@ -328,7 +385,7 @@ static status find_error(simulation *sim, cl_mem rises, double step, frozen_find
     cl_kernel error = launch_kernel(sim, "heat_frozen_error"), capacity = launch_kernel(sim, "heat_frozen_store");
     launch.heat_row = sim->heat.vary ? 2 : 0;
     TRY(frozen_set_network(sim, error, "heat_frozen_error", &launch, rises, why));
-    TRY(launch_set_from(error, "heat_frozen_error", 6, why, sim->mixed ? "mmmf" : "mmmd", f->start, f->error, f->rates, step));
+    TRY(launch_set_from(error, "heat_frozen_error", 6, why, sim->mixed ? "mmmf" : "mmmd", frozen_rates_at_start(sim), f->error, f->rates, step));
     TRY(frozen_run_grains(sim, "heat_frozen_error", 10, why));
     TRY(find_residual(sim, rises, f->zero, 1.0 / (GAMMA * step), 2, false, why));
     TRY(launch_set(capacity, "heat_frozen_store", why, sim->mixed ? "Lmmmf" : "Lmmmd", &launch, f->error, f->diagonal, f->residual, 1.0 / (GAMMA * step)));
@@ -337,7 +394,7 @@ static status find_error(simulation *sim, cl_mem rises, double step, frozen_find
     return frozen_fold(sim, rises, f->x, f->rates, out, why);
 }
 
-/* The two stages of a step; the rises at its end stand in rises[2]. */
+/* The two stages with the conductances as they stand; the rises at the end stand in rises[2]. */
 static status run_stages(simulation *sim, double step, bool *converged, failure *why)
 {
     frozen_heat *f = &sim->frozen;
@@ -360,6 +417,27 @@ static status run_stages(simulation *sim, double step, bool *converged, failure 
     return *converged ? weigh_flows(sim, second, 2, GAMMA * step, false, why) : STATUS_OK;
 }
 
+/* As the stabilised method does (frozen.c): where conductances follow the temperatures, a step with those of its start finds those of its middle. */
+static status try_step(simulation *sim, double step, frozen_findings *found, failure *why)
+{
+    bool converged, fits = true;
+    *found = (frozen_findings){1e30, 0.0, 0.0, 0.0};
+    TRY(run_stages(sim, step, &converged, why));
+    if (converged && frozen_follows(sim)) {
+        TRY(frozen_keep_start(sim, why));
+        TRY(frozen_look_up(sim, sim->frozen.rises[2], 0.5, why));
+        TRY(run_stages(sim, step, &converged, why));
+        if (converged)
+            TRY(frozen_look_up(sim, sim->frozen.rises[2], 1.0, why));
+        TRY(frozen_fits_table(sim, &fits, why));
+    }
+    if (!fits) {
+        found->error = 8.0 * frozen_allowed_error(sim); /* two fifths of the step */
+        return STATUS_OK;
+    }
+    return converged ? find_error(sim, sim->frozen.rises[2], step, found, why) : STATUS_OK;
+}
+
 status frozen_implicit_step(simulation *sim, double until, failure *why)
 {
     frozen_heat *f = &sim->frozen;
@@ -371,12 +449,9 @@ status frozen_implicit_step(simulation *sim, double until, failure *why)
         f->next = isfinite(f->limit) ? f->limit : left;
     for (;;) {
         double step = frozen_fit_step(f->next, left);
-        bool converged;
-        frozen_findings found = {1e30, 0.0, 0.0, 0.0};
+        frozen_findings found;
         TRY(frozen_write_rows(sim, place, 3, step, why));
-        TRY(run_stages(sim, step, &converged, why));
-        if (converged)
-            TRY(find_error(sim, f->rises[2], step, &found, why));
+        TRY(try_step(sim, step, &found, why));
         double growth = found.error > 0.0 ? 0.8 * cbrt(allowed / found.error) : 5.0;
         if (found.error <= allowed && frozen_is_inside(sim, &found)) {
             double next = step * fmin(growth, 5.0);
@@ -388,6 +463,7 @@ status frozen_implicit_step(simulation *sim, double until, failure *why)
             return STATUS_OK;
         }
         f->rejected++;
+        TRY(frozen_take_back(sim, why));
         f->next = step * (found.error > allowed ? fmax(fmin(growth, 0.8), 0.1) : 0.5);
         if (f->next < 1e-6 * fmin(f->limit, left))
             return frozen_give_up(sim, step, &found, why);

@@ -99,7 +99,7 @@ typedef struct heat_tables {
 /* A stage in which nothing moves (frozen.c): the links of the contact network, and how its steps go. */
 typedef struct frozen_heat {
     bool linked;           /* the arrays hold the network as it stands */
-    cl_mem link, conductance, given, start, zero, error, rates, kept, rises[3];
+    cl_mem link, conductance, given, start, begin, zero, error, rates, kept, rises[3];
     uint64_t link_bytes, grain_bytes;
     cl_mem fixed, residual, slope, diagonal, x, p, q, scalar; /* linear systems */
     double low, high;      /* temperatures that none leaves without being heated; NAN: not yet known */
@@ -280,6 +280,9 @@ status table_create(simulation *sim, failure *why);
 void table_free(simulation *sim);
 /* Sorts the grains and builds the table anew, histories carried over. drop_outside: grains outside the domain leave for good. */
 status table_build(simulation *sim, bool drop_outside, failure *why);
+/* What the largest growth of a grain is since the reference temperature, m. Where radii change, tables go by those at that temperature (who owns a
+ * pair may not depend on when a table was built), and what grains have grown by since is added to the skin. */
+status table_growth(simulation *sim, double *growth, failure *why);
 /* Largest displacement since the table was built, relative to the common one, m. */
 status table_travel(simulation *sim, double *out, failure *why);
 /* The radii that tables go by. */

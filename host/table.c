@@ -93,13 +93,10 @@ cl_mem table_radii(simulation *sim)
     return (reference ? reference : store_find(sim, "radius"))->mem;
 }
 
-/* Where radii change, tables go by those at the reference temperature: who owns a pair may not depend on when a table was built. What grains
- * have grown by since is added to the skin. */
-static status measure_growth(simulation *sim, failure *why)
+status table_growth(simulation *sim, double *growth, failure *why)
 {
-    contact_table *t = &sim->table;
     size_t n = (size_t)sim->count;
-    t->growth = 0.0;
+    *growth = 0.0;
     if (!sim->all.law[SLOT_RADIUS] || n == 0)
         return STATUS_OK;
     double *radius = malloc(2 * sizeof *radius * n);
@@ -107,7 +104,7 @@ static status measure_growth(simulation *sim, failure *why)
     if (result == STATUS_OK)
         result = store_get_grains(sim, store_find(sim, field_reference_radius.name), sim->count, radius + n, why);
     for (size_t i = 0; i < n && result == STATUS_OK; i++)
-        t->growth = fmax(t->growth, radius[i] - radius[n + i]);
+        *growth = fmax(*growth, radius[i] - radius[n + i]);
     free(radius);
     return result;
 }
@@ -428,7 +425,7 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
     int old_wall_base = t->old_wall_base = t->wall_base;
     int64_t old_stride = t->record_stride, old_capacity = t->record_capacity;
     TRY(bonds_before(sim, why));
-    TRY(measure_growth(sim, why));
+    TRY(table_growth(sim, &t->growth, why));
     set_grid(sim, drop_outside);
     TRY(fit_cells(sim, why));
     clast_grid grid = t->grid_host;

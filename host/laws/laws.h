@@ -16,6 +16,9 @@ extern const law law_heat_steps_every, law_tables_of_pairs, law_tables_of_grains
 double material_constant(const struct scene *scene, int material, const property *property);
 /* Factor of a grain's thermal resistivity at a temperature. */
 double resistivity_at(const struct scene *scene, int material, double temperature);
+/* J/(kg K), and its integral over a way of temperatures. */
+double specific_heat_at(const struct scene *scene, int material, double temperature);
+double specific_heat_between(const struct scene *scene, int material, double from, double to);
 extern const law law_linear_expansion, law_expansion_tracked;
 /* Radius at a temperature over the one given; 1 without a law of expansion. */
 double expansion_factor(const struct scene *scene, int material, double temperature);

@@ -72,6 +72,25 @@ double resistivity_at(const scene *scene, int material, double temperature)
     return table && most > 0.0 ? most / fmax(property_table_at(table, temperature), 1e-20 * most) : 1.0;
 }
 
+double specific_heat_at(const scene *scene, int material, double temperature)
+{
+    const property_table *table = scene_material_table(scene, material, &property_specific_heat);
+    return table ? property_table_at(table, temperature) : scene_material(scene, material, &property_specific_heat);
+}
+
+/* Linear between the places: the trapezoidal rule from place to place is exact. */
+double specific_heat_between(const scene *scene, int material, double from, double to)
+{
+    const property_table *table = scene_material_table(scene, material, &property_specific_heat);
+    double low = fmin(from, to), high = fmax(from, to), sum = 0.0, at = low;
+    for (int p = 0; p <= (table ? table->count : 0); p++) {
+        double next = table && p < table->count ? fmin(fmax(table->temperature_k[p], low), high) : high;
+        sum += 0.5 * (next - at) * (specific_heat_at(scene, material, at) + specific_heat_at(scene, material, next));
+        at = next;
+    }
+    return to < from ? -sum : sum;
+}
+
 const law law_friction_tabled = {
     .name = "tables",
     .slot = SLOT_FRICTION,

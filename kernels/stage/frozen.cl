@@ -170,6 +170,18 @@ __kernel void heat_frozen_accept(const clast_launch launch, __global const real 
     HEAT_TALLY_ADD(i, &h);
 }
 
+/* What conductances depend on, at the temperatures that a share of the rises leads to. */
+__kernel void heat_frozen_probe(const clast_launch launch, __global const real *restrict rises, const real share PARTICLE_DECLARE)
+{
+    int i = get_global_id(0);
+    grain g;
+    particle_grain(&launch, i, &g PARTICLE_PASS);
+    precise then = temperature_after(TEMPERATURE_PRECISE(i), share * rises[i]);
+    (void)then;
+    RESISTIVITY_STORE(i, &g, then);
+    (void)RADIUS_STORE(i, &g, then);
+}
+
 /* Per chunk the largest rate at which what draws a grain's temperature, 1/s, up to surfaces at `hottest`: half of Gershgorin's bound of the
  * spectrum. Radiation enters by its slope, that of surroundings as hot as the surface. */
 __kernel void heat_frozen_spectrum(const clast_launch launch, __global const real *restrict conductance, __global exact *restrict partial,

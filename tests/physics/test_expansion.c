@@ -1,5 +1,6 @@
 /* Grains that grow with their temperature: radii and forces, what is kept, the work that it does, and the contact table. */
 #include "case.h"
+#include "frozen.h"
 #include "heat_case.h"
 #include "ledger.h"
 
@@ -221,12 +222,95 @@ static void test_conduction(void **state)
     case_close(&c);
 }
 
+/* ---- while nothing moves ---- */
+
+/* A grain that is held between two walls of 700 and 300 K, its centre L from either, grows into them as it warms: H = k pi (r^2 - L^2)/(2 L) by the
+ * mirror law. Returns the time after which it has the temperature `end`: the integral of m c/(2 H (Tm - T)) from 320 K on, by Simpson's rule. */
+static double time_to(double end, double conductivity, double half)
+{
+    const int pieces = 20000;
+    double sum = 0.0, width = (end - 320.0) / pieces, mc = sphere_mass(density, radius) * 100.0;
+    for (int n = 0; n <= pieces; n++) {
+        double at = 320.0 + n * width, r = expanded(radius, alpha, at - 300.0);
+        double conductance = conductivity * PI * (r * r - half * half) / (2.0 * half);
+        sum += (n == 0 || n == pieces ? 1.0 : n % 2 ? 4.0 : 2.0) * mc / (2.0 * conductance * (500.0 - at));
+    }
+    return sum * width / 3.0;
+}
+
+/* The error goes as the tolerance to the power 2/3, though conductances grow threefold; and what a frozen stage leaves behind is of the temperatures
+ * that it leaves: radii, moduli, and the forces of the stage that follows. */
+static void test_frozen(void **state)
+{
+    (void)state;
+    const char *const methods[] = {"stabilised", "implicit", "explicit", "steady"};
+    const double half = 0.995 * radius, conductivity = 60.0, time = time_to(450.0, conductivity, half), rate = 2.0, critical = 350.0;
+    for (int way = 0; way < 6; way++) {
+        static double error[2];
+        const char *method = methods[way < 4 ? way / 2 : way - 2];
+        text t = {0};
+        put(&t, "effects:\n  - {slot: conduction, law: overlap_area}\n  - {slot: normal, law: hertz}\n  - {slot: radius, law: linear_expansion}\n"
+                "  - {slot: modulus, law: exponential_softening}\n"
+                "materials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: %g, conductivity_w_mk: %g, specific_heat_j_kgk: 100, expansion_1_k: %g,\n"
+                "  softening_temperature_k: %g, softening_rate: %g}]\n"
+                "interactions: [{between: default, normal_damping_ratio: 0}]\n"
+                "walls:\n  - {name: hot, shape: plane, point_m: [%.17g, 0, 0], normal: [1, 0, 0], temperature_k: 700}\n"
+                "  - {name: cold, shape: plane, point_m: [%.17g, 0, 0], normal: [-1, 0, 0], temperature_k: 300}\n"
+                "stages: [{motion: frozen, until: {time_s: 1000}, heat: {method: %s, tolerance: %g}}, {until: {steps: 1}}]\n"
+                "particles:\n  - name: p\n    material: m\n    temperature_k: 320\n    generator: list\n    items:\n",
+            density, young, nu, conductivity, alpha, critical, rate, -half, half, method, way % 2 ? 1e-6 : 1e-4);
+        put_grain(&t, radius, (double[]){0, 0, 0}, (double[]){0, 0, 0}, (double[]){3, 0, 0});
+        physics_case c = case_open(&t);
+        MUST(frozen_advance(c.sim, time, 100000, why));
+        double now = temperature_of(&c, 0), r = expanded(radius, alpha, now - 300.0), factor = exp(rate * (1.0 - now / critical));
+        error[way % 2] = fabs(now - (way < 5 ? 450.0 : 500.0));
+        assert_true(error[way % 2] < (way < 4 ? way % 2 ? 4e-2 : 4.0 : way == 4 ? 4.0 : 1e-6) + floats(1e4) * 450.0);
+        if (way < 4 && way % 2 && floats(1) == 0.0)
+            BETWEEN(log(error[0] / error[1]) / log(100.0), 0.5, 0.85);
+        RELATIVE(case_get(&c, "radius", 0, 0), r, 1e-12 + floats(alpha * 200.0));
+        RELATIVE(case_get(&c, "modulus_factor", 0, 0), factor, 1e-12 + floats(8));
+        case_stage(&c, 1);
+        int64_t count;
+        live_contact *contacts = case_contacts(&c, &count);
+        double force = 4.0 / 3.0 * factor * young / (1.0 - nu * nu) * sqrt(r) * pow(r - half, 1.5);
+        assert_int_equal(count, 2);
+        for (int k = 0; k < 2; k++)
+            RELATIVE(fabs(contacts[k].force[0]), force, 1e-9 + floats(200));
+        free(contacts);
+        RELATIVE(case_get(&c, "spin", 0, 0), 3.0 * pow(expanded(radius, alpha, 20.0) / r, 2), 1e-9 + floats(16));
+        case_close(&c);
+    }
+}
+
+/* Grains that grow until they meet others, further than the skin reaches: the pairs are looked for anew. */
+static void test_frozen_table(void **state)
+{
+    (void)state;
+    double reached[2];
+    for (int wide = 0; wide < 2; wide++) {
+        text t = {0};
+        put(&t, "contact_table: {skin_m: %s}\neffects: [{slot: conduction, law: overlap_area}, {slot: radius, law: linear_expansion}]\n"
+                "materials: [{name: m, density_kg_m3: 2500, conductivity_w_mk: 60, specific_heat_j_kgk: 500, expansion_1_k: 1.0e-4}]\n"
+                "stages: [{motion: frozen, until: {time_s: 10}, heat: {tolerance: 1.0e-5}}]\n"
+                "particles:\n  - {name: a, material: m, generator: list, thermal: prescribed, temperature_k: {time_s: [0, 10], value: [300, 1300]}, "
+                "items: [{position_m: [0, 0, 0], radius_m: 2.0e-3}]}\n"
+                "  - {name: b, material: m, generator: list, temperature_k: 300, items: [{position_m: [4.05e-3, 0, 0], radius_m: 2.0e-3}]}\n",
+            wide ? "1.0e-3" : "1.0e-6");
+        physics_case c = case_open(&t);
+        MUST(frozen_advance(c.sim, 10.0, 100000, why));
+        reached[wide] = temperature_of(&c, 1);
+        case_close(&c);
+    }
+    assert_true(reached[0] > 310.0);
+    RELATIVE(reached[0], reached[1], 1e-3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_confined_column), cmocka_unit_test(test_uneven_column), cmocka_unit_test(test_angular_momentum),
         cmocka_unit_test(test_work),            cmocka_unit_test(test_work_of_spin),  cmocka_unit_test(test_table),
-        cmocka_unit_test(test_conduction),
+        cmocka_unit_test(test_conduction),      cmocka_unit_test(test_frozen),        cmocka_unit_test(test_frozen_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -77,8 +77,9 @@ static void test_exchange(void **state)
 {
     (void)state;
     const char *const stages[] = {"stages: [{name: go, until: {steps: 1}}]\n", "stages: [{name: go, until: {time_s: 40}, motion: frozen}]\n",
-                                  "stages: [{name: go, until: {time_s: 40}, motion: frozen, heat: {method: implicit}}]\n"};
-    for (int way = 0; way < 3; way++) {
+                                  "stages: [{name: go, until: {time_s: 40}, motion: frozen, heat: {method: implicit}}]\n",
+                                  "stages: [{name: go, until: {time_s: 40}, motion: frozen, heat: {method: steady}}]\n"};
+    for (int way = 0; way < COUNT_OF(stages); way++) {
         text t = {0};
         put(&t, "effects: [{slot: conduction, law: overlap_area}]\n"
                 "materials: [{name: m, density_kg_m3: 2000, conductivity_w_mk: 50, " HEAT_TABLE "}]\n%s"
@@ -153,6 +154,38 @@ static void test_conductivity(void **state)
         RELATIVE(-flow_of(&c, CHAIN - 1, -2), low, 1e-7 + floats(400));
         RELATIVE(flow, kirchhoff, 1.0 / CHAIN / CHAIN);
         case_close(&c);
+    }
+}
+
+/* One grain between two walls of temperatures Th and Tc, k = k0 + s (T - 300): with u = (Th + Tc)/2 - T the equation is du/dt = -a (km - s u) u,
+ * whose solution is u = km/(s + (km/u0 - s) exp(a km t)). The error in a frozen stage goes as the tolerance to the power 2/3, as that of constant
+ * conductances does: an order of 2, though these are looked up once a step and a half. */
+static void test_order_of_conductivity(void **state)
+{
+    (void)state;
+    const double r = 1e-3, d = 1e-5, k0 = 10.0, s = 0.05, hot = 700.0, cold = 300.0, start = 320.0;
+    const double capacity = sphere_mass(2000.0, r) * 100.0, each = PI * (r * r - (r - d) * (r - d)) / (2.0 * (r - d)), a = 2.0 * each / capacity;
+    const double middle = 0.5 * (hot + cold), km = k0 + s * (middle - 300.0), time = 1.0 / (a * km);
+    const double expected = middle - km / (s + (km / (middle - start) - s) * exp(a * km * time));
+    for (int way = 0; way < 4; way++) {
+        static double error[2];
+        text t = {0};
+        put(&t, "effects: [{slot: conduction, law: overlap_area}]\n"
+                "materials: [{name: m, density_kg_m3: 2000, specific_heat_j_kgk: 100, conductivity_w_mk: {temperature_k: [300, 700], value: [10, 30]}}]\n"
+                "walls:\n  - {name: hot, shape: plane, point_m: [%.17g, 0, 0], normal: [1, 0, 0], temperature_k: %g}\n"
+                "  - {name: cold, shape: plane, point_m: [%.17g, 0, 0], normal: [-1, 0, 0], temperature_k: %g}\n"
+                "stages: [{name: go, until: {time_s: 2000}, motion: frozen, heat: {method: %s, tolerance: %g}}]\n"
+                "particles:\n  - name: p\n    material: m\n    temperature_k: %g\n    generator: list\n    items:\n",
+            d - r, hot, r - d, cold, way < 2 ? "stabilised" : "implicit", way % 2 ? 1e-6 : 1e-4, start);
+        put_grain(&t, r, (double[]){0, 0, 0}, (double[]){0, 0, 0}, (double[]){0, 0, 0});
+        physics_case c = case_open(&t);
+        MUST(frozen_advance(c.sim, time, 100000, why));
+        error[way % 2] = fabs(temperature_of(&c, 0) - expected);
+        assert_true(c.sim->stage_steps < (way % 2 ? 200 : 50));
+        case_close(&c);
+        assert_true(error[way % 2] < (way % 2 ? 1e-4 : 1e-2) * (hot - cold) + floats(1e4) * hot);
+        if (way % 2 && floats(1) == 0.0)
+            BETWEEN(log(error[0] / error[1]) / log(100.0), 0.5, 0.85);
     }
 }
 
@@ -256,7 +289,7 @@ static void test_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_specific_heat), cmocka_unit_test(test_exchange), cmocka_unit_test(test_conductivity),
+        cmocka_unit_test(test_specific_heat), cmocka_unit_test(test_exchange), cmocka_unit_test(test_conductivity), cmocka_unit_test(test_order_of_conductivity),
         cmocka_unit_test(test_friction),      cmocka_unit_test(test_modulus),  cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
