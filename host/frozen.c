@@ -182,6 +182,13 @@ static status find_interval(simulation *sim, failure *why)
     return STATUS_OK;
 }
 
+status frozen_range(simulation *sim, double *out, failure *why)
+{
+    TRY(find_interval(sim, why));
+    *out = sim->frozen.high - sim->frozen.low;
+    return STATUS_OK;
+}
+
 status frozen_find_limit(simulation *sim, failure *why)
 {
     frozen_heat *f = &sim->frozen;

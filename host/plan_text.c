@@ -187,10 +187,13 @@ static void print_end(const plan_stage *s)
     if (rest)
         printf("%sat rest", or);
     if (!isnan(stage->until_steady_k_s))
-        printf("%swhen no temperature changes faster than %.4g K/s", !isnan(stage->until_time_s) || stage->until_steps >= 0 ? " or " : "", stage->until_steady_k_s);
+        printf("%swhen no temperature changes faster than %.4g K/s", !isnan(stage->until_time_s) || stage->until_steps >= 0 || rest ? " or " : "", stage->until_steady_k_s);
     if (!isnan(s->steps))
         printf(": %.4g steps%s", s->steps, rest ? " at most" : "");
     printf("\n");
+    if (stage->repeat_from)
+        printf("    then again from `%s`, until temperatures change by less than %.3g of their range from round to round; %lld rounds at most\n",
+               stage->repeat_from, stage->repeat_change, (long long)stage->repeat_rounds);
 }
 
 /* Nothing moves: the method chooses its steps. */

@@ -3,6 +3,7 @@
 #include "frozen.h"
 #include "output.h"
 #include "schedule.h"
+#include "steady.h"
 
 #include <errno.h>
 #include <math.h>
@@ -40,6 +41,8 @@ typedef struct run {
     simulation *sim;
     output *output;
     schedule schedule;
+    temperature_look steady; /* at the last look, in stages that move and end when temperatures stand */
+    stage_rounds rounds;
     char *results_path, *checkpoint_path;
     bundle good;      /* the last state that passed the guards; empty at first */
     double good_cost, good_at; /* wall seconds that it took, and when */
@@ -65,6 +68,8 @@ static void run_free(run *r)
     bed_free(&r->bed);
     scene_free(r->scene);
     bundle_free(&r->good);
+    look_free(&r->steady);
+    look_free(&r->rounds.last);
     device_close(&r->device);
     free(r->results_path);
     free(r->checkpoint_path);
@@ -181,6 +186,9 @@ static status save_state(run *r, bundle *out, failure *why)
     bundle_add_f64(out, "schedule/stage_start", s->stage_start);
     bundle_add_f64(out, "schedule/recommended_s", s->recommended_s);
     bundle_add_i64(out, "schedule/automatic", s->automatic);
+    bundle_add_f64(out, "steady/rate", r->sim->frozen.rate);
+    look_save(&r->steady, r->sim, "steady", out);
+    rounds_save(&r->rounds, r->sim, out);
     const simulation *sim = r->sim;
     const double measures[] = {sim->radius_min, sim->radius_max, sim->mean_radius, sim->mean_mass};
     bundle_add(out, "bed/measures", BUNDLE_F64, 4, 1, measures);
@@ -259,6 +267,14 @@ static status look_for_rest(run *r, failure *why)
     return STATUS_OK;
 }
 
+static status look_for_steady(run *r, failure *why)
+{
+    double change, span;
+    TRY(look_at_temperatures(r->sim, &r->steady, &change, &span, why));
+    r->sim->frozen.rate = change / span;
+    return STATUS_OK;
+}
+
 static status look_at_guards(run *r, failure *why)
 {
     guard_finding finding;
@@ -281,6 +297,8 @@ static status looks(run *r, failure *why)
         TRY(look_at_guards(r, why));
     if ((!isnan(stage->until_rest) || !isnan(stage->until_rest_j)) && every(sim->stage_steps, REST_CHECK_STEPS))
         TRY(look_for_rest(r, why));
+    if (!isnan(stage->until_steady_k_s) && every(sim->stage_steps, steady_interval(stage)))
+        TRY(look_for_steady(r, why));
     if (every(sim->stage_steps, r->schedule.automatic ? LIMIT_CHECK_STEPS : 10 * r->scene->guards.every_steps))
         TRY(look_at_limit(r, why));
     return STATUS_OK;
@@ -298,8 +316,10 @@ static status refuse_step(const run *r, const scene_stage *stage, const step_lim
 
 static status begin_frozen_stage(run *r, const scene_stage *stage, failure *why)
 {
-    double limit;
+    double limit, range;
     TRY(frozen_limit(r->sim, &limit, why));
+    TRY(frozen_range(r->sim, &range, why));
+    r->rounds.range = fmax(r->rounds.range, range);
     tell(r, "stage %s: motion is frozen; heat by the %s method, tolerance %.3g of the temperature range; limit of Euler's method %.4g s", stage->name,
          frozen_method_name(stage->heat_method), stage->heat_tolerance, limit);
     schedule_begin_stage(&r->schedule, r->sim, isfinite(limit) ? limit : 1.0);
@@ -313,6 +333,11 @@ static status begin_stage(run *r, int index, failure *why)
     TRY(simulation_begin_stage(r->sim, index, why));
     if (stage->frozen)
         return begin_frozen_stage(r, stage, why);
+    look_free(&r->steady);
+    if (!isnan(stage->until_steady_k_s)) { /* the first look, to compare with */
+        double change, span;
+        TRY(look_at_temperatures(r->sim, &r->steady, &change, &span, why));
+    }
     TRY(limit_find(r->sim, &limit, why));
     if (!isnan(stage->step_s) && stage->step_s > limit.limit_s && !stage->allow_unstable_step)
         return refuse_step(r, stage, &limit, why);
@@ -385,13 +410,28 @@ static status run_stage(run *r, failure *why)
     return STATUS_OK;
 }
 
-/* From stage `first` on; the first is already under way when `resumed`. */
-static status run_stages(run *r, int first, bool resumed, failure *why)
+/* The stage that follows `s`: the next, or another round of those that it repeats. */
+static status next_stage(run *r, int *s, failure *why)
 {
-    for (int s = first; s < r->scene->stage_count; s++) {
-        if (s > 0 && !(resumed && s == first))
-            TRY(begin_stage(r, s, why));
+    const scene_stage *stage = &r->scene->stage[*s];
+    bool again = false;
+    char text[512];
+    if (stage->repeat_from) {
+        TRY(rounds_end(&r->rounds, r->sim, &again, text, sizeof text, why));
+        tell(r, "%s", text);
+    }
+    *s = again ? stage->repeat_index : *s + 1;
+    return STATUS_OK;
+}
+
+/* From stage `first` on, which is under way. */
+static status run_stages(run *r, int first, failure *why)
+{
+    for (int s = first; s < r->scene->stage_count;) {
         TRY(r->scene->stage[s].frozen ? run_frozen_stage(r, why) : run_stage(r, why));
+        TRY(next_stage(r, &s, why));
+        if (s < r->scene->stage_count)
+            TRY(begin_stage(r, s, why));
     }
     return STATUS_OK;
 }
@@ -497,7 +537,7 @@ static status begin_scene(run *r, const run_options *options, failure *why)
     tell(r, "%lld grains on %s, %.0f bytes each; first step after %.2f s", (long long)r->sim->id_count, r->device.info.name,
          (double)r->sim->bytes / (double)r->sim->id_count, seconds() - r->started);
     double first = seconds();
-    TRY(run_stages(r, 0, false, why));
+    TRY(run_stages(r, 0, why));
     if (options->report)
         *options->report = (run_report){r->sim->id_count, r->sim->step, r->stepping, first - r->started, r->sim->time};
     return STATUS_OK;
@@ -605,6 +645,7 @@ static status precision_of(const bundle *in, const char *path, scene *scene, fai
 static status resume_from(run *r, const run_options *options, const bundle *state, failure *why)
 {
     char *text = NULL, *path = NULL, *results = NULL;
+    const bundle_entry *rate;
     const char *from = options->checkpoint_path;
     status result = text_of(state, from, "scene/text", &text, why);
     if (result == STATUS_OK)
@@ -627,6 +668,10 @@ static status resume_from(run *r, const run_options *options, const bundle *stat
     TRY(schedule_load(&r->schedule, state, from, why));
     TRY(load_measures(r->sim, state, from, why));
     TRY(state_load(r->sim, state, from, why));
+    TRY(rounds_load(&r->rounds, r->sim, state, from, why));
+    TRY(look_load(&r->steady, r->sim, "steady", state, why));
+    TRY(bundle_get(state, from, "steady/rate", BUNDLE_F64, 1, 1, &rate, why));
+    r->sim->frozen.rate = *(double *)rate->data;
     r->first_step = r->sim->step;
     TRY(open_output(r, options->out == NULL, why));
     if (options->out) {
@@ -634,7 +679,7 @@ static status resume_from(run *r, const run_options *options, const bundle *stat
         TRY(output_frame(r->output, why));
     }
     tell(r, "going on at t = %.9g s (step %lld) in %s", r->sim->time, (long long)r->sim->step, r->results_path);
-    return run_stages(r, r->sim->stage, true, why);
+    return run_stages(r, r->sim->stage, why);
 }
 
 status run_resume(const run_options *options, failure *why)

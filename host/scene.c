@@ -317,6 +317,7 @@ static void free_group(particle_group *group)
 static void free_stage(scene_stage *stage)
 {
     free(stage->name);
+    free(stage->repeat_from);
     for (int k = 0; k < stage->wall_change_count; k++) {
         free_motion(&stage->wall_change[k].motion);
         quantity_free(&stage->wall_change[k].heat.temperature_k);

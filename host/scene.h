@@ -242,6 +242,10 @@ typedef struct scene_stage {
     int interaction_count;
     interaction *interaction; /* laid over the scene's: its values replace those of the same pair */
     bool slot_off[SLOT_COUNT];
+    char *repeat_from;      /* NULL: the next stage follows */
+    int repeat_index;       /* of that stage */
+    double repeat_change;   /* of the range of temperatures */
+    int64_t repeat_rounds;
     place at;
 } scene_stage;
 

@@ -110,15 +110,53 @@ static status check_environment(reader *r)
     return STATUS_OK;
 }
 
+/* Going back undoes what later stages have changed, by itself: only not the motions, which go on from where they are. */
+static bool changes_motion(const scene_stage *stage)
+{
+    bool motion = stage->group_change_count > 0 || stage->wall_group_change_count > 0;
+    for (int c = 0; c < stage->wall_change_count; c++)
+        motion = motion || stage->wall_change[c].motion_given || stage->wall_change[c].servo.given;
+    return motion;
+}
+
+static status check_repeat(reader *r, int t)
+{
+    scene *s = r->scene;
+    scene_stage *stage = &s->stage[t];
+    int node = document_at(r->document, "stages[%d].repeat", t), from = -1;
+    if (!stage->repeat_from)
+        return STATUS_OK;
+    for (int k = 0; k < t && from < 0; k++)
+        if (strcmp(s->stage[k].name, stage->repeat_from) == 0)
+            from = k;
+    if (from < 0)
+        return document_fail(r->document, document_at(r->document, "stages[%d].repeat.from", t), r->why,
+                             "`from` must name a stage before this one; no such stage is called `%s`", stage->repeat_from);
+    if (!scene_has_heat(s))
+        return document_fail(r->document, node, r->why,
+                             "rounds of stages end when temperatures stand, and no law of heat is listed under `effects`; add one, or leave `repeat` out");
+    for (int k = from; k < t; k++)
+        if (s->stage[k].repeat_from)
+            return document_fail(r->document, node, r->why, "the stage `%s` between `%s` and this one repeats stages itself; rounds do not nest",
+                                 s->stage[k].name, stage->repeat_from);
+    for (int k = from + 1; k <= t; k++)
+        if (changes_motion(&s->stage[k]))
+            return document_fail(r->document, document_at(r->document, "stages[%d].change", k), r->why,
+                                 "stages that are repeated may change motions and servos in the first of them alone, `%s`", stage->repeat_from);
+    stage->repeat_index = from;
+    return STATUS_OK;
+}
+
 /* What a stage with frozen motion needs, and what only such a stage may ask for. */
 status check_frozen_stage(reader *r, int t)
 {
     const scene *s = r->scene;
     const scene_stage *stage = &s->stage[t];
     int node = document_at(r->document, "stages[%d]", t);
-    if (!stage->frozen && !isnan(stage->until_steady_k_s))
+    if (!isnan(stage->until_steady_k_s) && !scene_has_heat(s))
         return document_fail(r->document, document_at(r->document, "stages[%d].until.steady_k_s", t), r->why,
-                             "`steady_k_s` ends stages with `motion: frozen` only; use `time_s` here");
+                             "`steady_k_s` looks at temperatures, and no law of heat is listed under `effects`; add one, or use `time_s`");
+    TRY(check_repeat(r, t));
     if (!stage->frozen)
         return STATUS_OK;
     if (stage->heat_every > 1)

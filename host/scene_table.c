@@ -300,7 +300,7 @@ static const parameter until_rows[] = {
     {.key = "rest_j", .type = PARAMETER_NUMBER, .unit = "J", POSITIVE, AT(scene_stage, until_rest_j),
      .doc = "the same with a limit in joules, for scenes without gravity"},
     {.key = "steady_k_s", .type = PARAMETER_NUMBER, .unit = "K/s", POSITIVE, AT(scene_stage, until_steady_k_s),
-     .doc = "no temperature changes faster than this; in stages with `motion: frozen`"},
+     .doc = "no temperature changes faster than this; where grains move, in the mean over 100 steps (of heat)"},
     {0},
 };
 const section until_section = {.name = "stage end (`until`)", .doc = "When a stage ends; with several keys the first one met ends it.",
@@ -378,6 +378,17 @@ static const parameter stage_heat_rows[] = {
 };
 const section stage_heat_section = {.name = "heat of a stage", .doc = "How heat advances: `method` and `tolerance` in a stage with `motion: frozen`, `every_steps` in others.", .row = stage_heat_rows};
 
+static const parameter stage_repeat_rows[] = {
+    {.key = "from", .type = PARAMETER_NAME, .required = true, AT(scene_stage, repeat_from), .doc = "the earlier stage to go back to"},
+    {.key = "until_change", .type = PARAMETER_NUMBER, .low = 1e-12, .high = 1.0, .fallback = "1e-3", AT(scene_stage, repeat_change),
+     .doc = "the rounds end when no temperature has changed by more than this share of the range of temperatures between the ends of two rounds"},
+    {.key = "rounds", .type = PARAMETER_INTEGER, .low = 1, .high = 1000000, .fallback = "100", AT(scene_stage, repeat_rounds),
+     .doc = "largest number of rounds"},
+    {0},
+};
+const section stage_repeat_section = {.name = "repetition of stages", .doc = "Rounds of stages: heat while nothing moves and motion with the moduli and radii that it leaves, say.",
+                                      .row = stage_repeat_rows};
+
 static const parameter stage_rows[] = {
     {.key = "name", .type = PARAMETER_NAME, .shown = "stage1, stage2, ...", AT(scene_stage, name), .doc = "name of the stage"},
     {.key = "until", .type = PARAMETER_SECTION, .section = &until_section, .required = true,
@@ -392,6 +403,8 @@ static const parameter stage_rows[] = {
     {.key = "change", .type = PARAMETER_SECTION, .section = &change_section, .doc = "what changes at the start of the stage"},
     {.key = "effects_off", .type = PARAMETER_OTHER, .read = read_effects_off, .shown = "[]", .form = "list of slots",
      .doc = "slots whose law is switched off during this stage"},
+    {.key = "repeat", .type = PARAMETER_SECTION, .section = &stage_repeat_section, .shown = "no",
+     .doc = "at its end goes back to an earlier stage, round by round, until temperatures stand"},
     {0},
 };
 const section stage_section = {.name = "stage", .doc = "What is run, one stage after the other; time runs on.", .row = stage_rows,

@@ -1,5 +1,7 @@
 #include "schedule.h"
 
+#include "steady.h"
+
 #include <math.h>
 
 /* Two times are the same within this share of a step. */
@@ -104,6 +106,8 @@ int64_t schedule_steps(schedule *s, simulation *sim)
         steps = least(steps, stage->until_steps - sim->stage_steps);
     if (!isnan(stage->until_rest) || !isnan(stage->until_rest_j))
         steps = least(steps, to_multiple(sim->stage_steps, REST_CHECK_STEPS));
+    if (!isnan(stage->until_steady_k_s))
+        steps = least(steps, to_multiple(sim->stage_steps, steady_interval(stage)));
     steps = least(steps, to_multiple(sim->stage_steps, s->scene->guards.every_steps));
     if (s->automatic)
         steps = least(steps, to_multiple(sim->stage_steps, LIMIT_CHECK_STEPS));
