@@ -189,6 +189,7 @@ static void write_page(FILE *page)
     write_section(page, "`stages`", &stage_section);
     write_section(page, "`until`", &until_section);
     write_section(page, "`heat` of a stage", &stage_heat_section);
+    write_section(page, "`repeat` of a stage", &stage_repeat_section);
     write_section(page, "`change`", &change_section);
     write_section(page, "`walls` of a change", &wall_change_section);
     write_section(page, "`wall_groups` of a change", &wall_group_change_section);

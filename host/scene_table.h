@@ -7,7 +7,7 @@ extern const section scene_section, domain_section, effect_section, material_sec
     item_section, radius_section, wall_section, servo_section, wall_group_section,
     wall_group_change_section, motion_section, stage_section, until_section, change_section, wall_change_section,
     group_change_section, output_section, table_section, guard_section, study_section, closed_form_section, environment_section, gas_section, quantity_section, property_table_section,
-    stage_heat_section, path_section;
+    stage_heat_section, stage_repeat_section, path_section;
 /* Keys of every source besides its law's options; ends with a NULL key. */
 extern const parameter beam_rows[];
 

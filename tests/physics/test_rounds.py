@@ -175,13 +175,6 @@ stages: [{name: cool, until: {steady_k_s: 0.5, time_s: 1000}, step_s: 1.0e-3}]
         self.assertGreater(end, due)
         self.assertLess(end, due + 0.2)  # looked at every 100 steps, in the mean over them
 
-    def test_needs_heat(self):
-        with tempfile.TemporaryDirectory() as folder:
-            _, done = run(folder, "effects: []\nmaterials: [{name: m, density_kg_m3: 1}]\nparticles: [{name: g, material: m, generator: list, "
-                                  "items: [{position_m: [0, 0, 0], radius_m: 1}]}]\nstages: [{until: {steady_k_s: 1}, step_s: 1}]\n")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("`steady_k_s` looks at temperatures, and no law of heat", done.stderr)
-
 
 if __name__ == "__main__":
     unittest.main()

@@ -432,7 +432,7 @@ static const bad_scene bad_scenes[] = {
     {"name: floor, ", "name: floor, servo: {direction: [0, 0, 1], force_n: 1, speed_max_m_s: 1, gain: 2}, ", "unknown key `gain` in a servo"},
     {"change: {inter", "change: {walls: [{name: floor, servo: on}], inter", "or `off`; it is `on`"},
     {"change: {inter", "change: {wall_groups: [{name: lids}], inter", "there is no wall group called `lids`; known here: none"},
-    {"rest: 1.0e-9", "rest: 1.0e-9, steady_k_s: 1", "`steady_k_s` ends stages with `motion: frozen` only; use `time_s` here"},
+    {"rest: 1.0e-9", "rest: 1.0e-9, steady_k_s: 1", "`steady_k_s` looks at temperatures, and no law of heat is listed under `effects`"},
     {"until: {time_s: 1}", "motion: frozen, until: {time_s: 1}", "`motion: frozen` leaves only heat to advance, and no law of heat is listed"},
     {"until: {time_s: 1}", "motion: still, until: {time_s: 1}", "`motion` must be one of `free`, `frozen`; it is `still`"},
     {"until: {time_s: 1}", "heat: {tolerance: 0}, until: {time_s: 1}", "`tolerance` must be a number, at least 1e-12, at most 0.1"},
