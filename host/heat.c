@@ -353,7 +353,7 @@ status heat_limit_find(simulation *sim, heat_limit *out, failure *why)
 {
     heat_sums sums;
     int64_t chunks = (sim->count + CHUNK - 1) / CHUNK;
-    *out = (heat_limit){INFINITY, INFINITY, INFINITY, INFINITY};
+    *out = (heat_limit){INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
     if (!sim->live.law[SLOT_TEMPERATURE] || sim->count == 0)
         return STATUS_OK;
     TRY(heat_observe(sim, &sums, why));
@@ -366,7 +366,7 @@ status heat_limit_find(simulation *sim, heat_limit *out, failure *why)
         if (partial[n] < 1e29)
             least[n % LIMITS] = fmin(least[n % LIMITS], partial[n]);
     free(partial);
-    *out = (heat_limit){least[0], least[1], least[2], least[3]};
+    *out = (heat_limit){least[0], least[1], least[2], least[3], INFINITY};
     return result;
 }
 

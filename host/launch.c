@@ -30,6 +30,7 @@ static const stage_list stage_lists[] = {
     {"limit_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"particle_stage", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"particle_synchronise", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"stiffness_rate", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_limit", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_frozen_given", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_frozen_links", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
@@ -182,6 +183,8 @@ static bool has_kernel(const simulation *sim, const char *name)
         return sim->live.law[SLOT_HEAT_STEPS] != NULL;
     if (strcmp(name, "heat_areas") == 0)
         return sim->live.law[SLOT_WALL_HEAT] == &law_wall_flux;
+    if (strcmp(name, "stiffness_rate") == 0)
+        return live_changes_stiffness(&sim->live);
     if (strncmp(name, "heat_frozen_", 12) == 0)
         return sim->live.frozen;
     if (strncmp(name, "beam_", 5) == 0)
@@ -224,7 +227,7 @@ status launch_open(simulation *sim, failure *why)
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
                                         "particle_synchronise", "step_loop", "servo_place", "servo_stage", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
-                                        "heat_conductances", "heat_limit", "heat_sums", "heat_surfaces", "heat_areas", "heat_flush",
+                                        "heat_conductances", "heat_limit", "stiffness_rate", "heat_sums", "heat_surfaces", "heat_areas", "heat_flush",
                                         "heat_frozen_given", "heat_frozen_links", "heat_frozen_stage", "heat_frozen_error",
                                         "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_probe", "heat_frozen_spectrum", "heat_frozen_residual",
                                         "heat_frozen_correct", "heat_frozen_hold", "heat_frozen_sinks", "heat_frozen_store",

@@ -1,5 +1,6 @@
 /* The largest stable step, from the contacts that there are and from those to be expected (docs/theory.md, "The step"). */
 #include "property.h"
+#include "schedule.h"
 #include "simulation.h"
 
 #include <math.h>
@@ -14,6 +15,8 @@
 #define SAFETY 0.7
 #define SHARE_OF_HEAT 0.1
 #define SHARE_OF_CONTACT 0.1
+/* The step that a look takes as recommended holds until the next: stiffness may not grow past its limit in between. */
+#define SHARE_OF_STIFFNESS (-2.0 * log(SAFETY) / LIMIT_CHECK_STEPS)
 /* Contacts through which a grain is expected to be heated at once. */
 #define CONTACTS_EXPECTED 12.0
 
@@ -134,6 +137,50 @@ static status note_heat(simulation *sim, step_limit *out, failure *why)
     return STATUS_OK;
 }
 
+/* Largest rates of change of the logarithm of a grain's modulus, 1/s, and of a radius, m/s. */
+static status stiffness_rates(simulation *sim, double *modulus, double *radial, failure *why)
+{
+    int64_t chunks = (sim->count + CHUNK - 1) / CHUNK;
+    cl_kernel kernel = launch_kernel(sim, "stiffness_rate");
+    *modulus = *radial = 0.0;
+    TRY(observe_flows(sim, why));
+    clast_launch launch = launch_values(sim);
+    TRY(observe_partial(sim, 2 * chunks, why));
+    TRY(launch_set(kernel, "stiffness_rate", why, "Lm", &launch, sim->partial));
+    TRY(launch_bind(sim, "stiffness_rate", 2, why));
+    TRY(launch_run(sim, kernel, "stiffness_rate", chunks, 1, why));
+    double *partial = malloc(sizeof *partial * (size_t)(2 * chunks + 1));
+    if (!partial)
+        return fail(why, STATUS_ERROR, "out of memory");
+    status result = store_get(sim, sim->partial, FIELD_EXACT, 0, 2 * chunks, partial, why);
+    for (int64_t c = 0; c < chunks && result == STATUS_OK; c++) {
+        *modulus = fmax(*modulus, partial[2 * c]);
+        *radial = fmax(*radial, partial[2 * c + 1]);
+    }
+    free(partial);
+    return result;
+}
+
+/* A contact of stiffness k goes as E sqrt(d): d ln k/dt is that of the modulus and half of that of the overlap, which two growing radii raise. The
+ * overlap is that at which the other limits stand: of the contacts to be expected, or of the deepest there is. */
+static status note_stiffness(simulation *sim, step_limit *out, double overlap, failure *why)
+{
+    double modulus, radial;
+    contact_sums contacts;
+    if (!live_changes_stiffness(&sim->live))
+        return STATUS_OK;
+    TRY(stiffness_rates(sim, &modulus, &radial, why));
+    if (radial > 0.0) {
+        TRY(observe_contact_sums(sim, &contacts, why));
+        overlap = fmax(overlap, contacts.overlap_max * sim->radius_min);
+    }
+    double rate = modulus + (radial > 0.0 ? radial / overlap : 0.0);
+    out->heat.stiffness = rate > 0.0 ? 1.0 / rate : INFINITY;
+    note(out, out->heat.stiffness, "change of stiffness by heat");
+    out->recommended_s = fmin(out->recommended_s, SHARE_OF_STIFFNESS * out->heat.stiffness);
+    return STATUS_OK;
+}
+
 /* A drag of rate c is a damper on top of all others: where w^2 dt^2 + b dt <= 4 bounded the step, w^2 dt^2 + (b + 2 c) dt <= 4 does, and
  * 1/(1/dt + c/2) is within that. An integrator that extrapolates what a damper is given counts it twice. */
 static void note_drag(const simulation *sim, step_limit *out)
@@ -164,7 +211,7 @@ status limit_find(simulation *sim, step_limit *out, failure *why)
     note(out, normal, "normal, contacts as they are");
     note(out, turning, "all modes together, contacts as they are");
     TRY(approach_speed(sim, &speed, &wall_speed, why));
-    double shortest = INFINITY;
+    double shortest = INFINITY, shallowest = INFINITY;
     for (int a = 0; a < sim->scene->material_count; a++)
         for (int p = 0; p < sim->scene->material_count + sim->scene->wall_count; p++) {
             expected_contact e;
@@ -172,6 +219,7 @@ status limit_find(simulation *sim, step_limit *out, failure *why)
                 continue;
             TRY(expect_class(sim, a, p, p < sim->scene->material_count ? speed : wall_speed, weight, &e, why));
             out->expected_s = fmin(out->expected_s, fmin(e.normal, e.turning));
+            shallowest = fmin(shallowest, e.overlap);
             note(out, e.normal, "normal, contact to be expected");
             note(out, e.turning, "tangential and rolling, contact to be expected");
             note(out, e.heat, "conduction of heat, contacts to be expected");
@@ -183,5 +231,5 @@ status limit_find(simulation *sim, step_limit *out, failure *why)
     out->recommended_s = fmin(SAFETY * out->limit_s, for_heat);
     if (SHARE_OF_CONTACT * shortest < out->recommended_s)
         out->recommended_s = SHARE_OF_CONTACT * shortest;
-    return STATUS_OK;
+    return note_stiffness(sim, out, shallowest, why);
 }

@@ -239,6 +239,11 @@ bool live_keeps_half_steps(const live_laws *live)
     return live_uses(live, &field_half_velocity);
 }
 
+bool live_changes_stiffness(const live_laws *live)
+{
+    return !live->frozen && live->law[SLOT_NORMAL] && (live->law[SLOT_MODULUS] || live->law[SLOT_RADIUS]);
+}
+
 int live_files(const live_laws *live, const char **files, int max)
 {
     static const char *const stages[] = {"stage/contact.cl", "stage/pair.cl", "stage/particle.cl", NULL, "stage/observe.cl"};
@@ -260,6 +265,8 @@ int live_files(const live_laws *live, const char **files, int max)
         files[count++] = "stage/heat.cl";
     if (live->law[SLOT_WALL_HEAT] == &law_wall_flux && count < max)
         files[count++] = "stage/heat_areas.cl";
+    if (live_changes_stiffness(live) && count < max)
+        files[count++] = "stage/stiffness.cl";
     if (live->frozen && count < max)
         files[count++] = "stage/frozen.cl";
     if (live->law[SLOT_SOURCE] && count < max)

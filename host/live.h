@@ -39,5 +39,7 @@ void live_grain_constants(const live_laws *live, const scene *scene, int stage, 
 bool live_uses(const live_laws *live, const field *field);
 /* True where velocities stand half a step behind the positions. */
 bool live_keeps_half_steps(const live_laws *live);
+/* True where heat changes the stiffness of contacts that move. */
+bool live_changes_stiffness(const live_laws *live);
 
 #endif

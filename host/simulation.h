@@ -59,6 +59,7 @@ typedef struct contact_table {
 /* Steps up to which no temperature leaves the interval of those around it, by what draws it. */
 typedef struct heat_limit {
     double conduction, convection, radiation, all;
+    double stiffness; /* in which the stiffness of a contact changes by a factor of e */
 } heat_limit;
 
 /* One launch of a step: work-groups of the pair stage or of the particle stage. */

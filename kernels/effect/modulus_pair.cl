@@ -13,6 +13,8 @@
 #define MODULUS_PARTICLE_FIELDS(READ, WRITE) WRITE(real, modulus_factor)
 #define MODULUS_OF(i) modulus_factor[i]
 #define MODULUS_STORE(i, g, t) modulus_factor[i] = modulus_at(g, rounded(t))
+/* Rate of change of the factor's logarithm, 1/s, where the temperature changes at `rate`: over the kelvin ahead. */
+#define MODULUS_RATE(g, rate) ((rate)*sign(rate) * log(modulus_at(g, (g)->temperature + sign(rate)) / modulus_at(g, (g)->temperature)))
 /* Contacts to be expected: as stiff as they can become. */
 #define MODULUS_EXPECTED(c) (c)->modulus_i = (c)->modulus_j = (c)->value[MODULUS_MOST]
 

@@ -8,6 +8,7 @@
 #define RADIUS_OWN(READ, WRITE) WRITE(exact, radius)
 #define RADIUS_PARTICLE_FIELDS(READ, WRITE) READ(exact, reference_radius) READ(exact, built_radius)
 #define RADIUS_STORE(i, g, t) radius_store(radius + (i), reference_radius[i], g, t)
+#define RADIUS_RATE(i, g, rate) (number(reference_radius[i]) * (g)->value[EXPANSION] * (rate))
 #define RADIUS_SPIN(i, w, growth) radius_spin(w, radius_turn_lost(number(radius[i]), growth))
 #define RADIUS_SPIN_WORK(i, w, growth, inertia) radius_spin_work(number(radius[i]), w, growth, inertia)
 #define RADIUS_TRAVEL(i, moved2) radius_travel(moved2, precise_load(radius[i]), precise_load(built_radius[i]))

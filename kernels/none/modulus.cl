@@ -3,6 +3,7 @@
 #define MODULUS_PARTICLE_FIELDS(READ, WRITE)
 #define MODULUS_OF(i) R(1.0)
 #define MODULUS_STORE(i, g, t)
+#define MODULUS_RATE(g, rate) R(0.0)
 #define MODULUS_EXPECTED(c)
 
 INLINE real modulus_normal(const contact *c)

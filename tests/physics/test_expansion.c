@@ -222,6 +222,25 @@ static void test_conduction(void **state)
     case_close(&c);
 }
 
+/* Growing grains press each other: a contact of overlap d stiffens at the rate of half of that at which d grows, r alpha T'/d. */
+static void test_limit(void **state)
+{
+    (void)state;
+    const double power = 1e12, overlap = 1e-6;
+    text t = {0};
+    put(&t, "effects:\n  - {slot: normal, law: hertz}\n  - {slot: radius, law: linear_expansion}\n  - {slot: heat_generation, law: volumetric}\n"
+            "materials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: %g, specific_heat_j_kgk: 100, expansion_1_k: %g, heat_generation_w_m3: %g}]\n"
+            "interactions: [{between: default, normal_damping_ratio: 0.3}]\n"
+            "particles:\n  - name: p\n    material: m\n    temperature_k: 300\n    generator: list\n    items:\n", density, young, nu, alpha, power);
+    put_grain(&t, radius, (double[]){0, 0, 0}, (double[]){0, 0, 0}, (double[]){0, 0, 0});
+    put_grain(&t, radius, (double[]){0, 2.0 * radius - overlap, 0}, (double[]){0, 0, 0}, (double[]){0, 0, 0});
+    physics_case c = case_open(&t);
+    step_limit limit = case_limit(&c);
+    RELATIVE(limit.heat.stiffness, overlap / (radius * alpha * power / (density * 100.0)), 1e-6 + floats(4096.0));
+    RELATIVE(limit.recommended_s, 2.0 * log(1.0 / 0.7) / 200.0 * limit.heat.stiffness, 1e-12);
+    case_close(&c);
+}
+
 /* ---- while nothing moves ---- */
 
 /* A grain that is held between two walls of 700 and 300 K, its centre L from either, grows into them as it warms: H = k pi (r^2 - L^2)/(2 L) by the
@@ -311,6 +330,7 @@ int main(void)
         cmocka_unit_test(test_confined_column), cmocka_unit_test(test_uneven_column), cmocka_unit_test(test_angular_momentum),
         cmocka_unit_test(test_work),            cmocka_unit_test(test_work_of_spin),  cmocka_unit_test(test_table),
         cmocka_unit_test(test_conduction),      cmocka_unit_test(test_frozen),        cmocka_unit_test(test_frozen_table),
+        cmocka_unit_test(test_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -119,12 +119,43 @@ static void test_work(void **state)
     BETWEEN(coarse / fine, 1.8, 4.5); /* first order, or better */
 }
 
+/* A grain beside surroundings at 300 or 2000 K: T' = 3 h (TE - T)/(rho c r), and its modulus changes at the rate beta T'/T* above T*. The step that is
+ * taken lets a stiffness grow by no more, until the next look, than the share that is kept from the limit. */
+static void test_limit(void **state)
+{
+    (void)state;
+    const double temperatures[] = {500, 500, 350}, surroundings[] = {300, 2000, 300}, h = 1e8, critical = 400, rate = 2;
+    for (int k = 0; k < 3; k++) {
+        text t = {0};
+        put(&t, "environment: {temperature_k: %g}\neffects:\n  - {slot: normal, law: hertz}\n  - {slot: modulus, law: exponential_softening}\n"
+                "  - {slot: convection, law: newton, coefficient_w_m2k: %g}\n"
+                "materials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: %g, specific_heat_j_kgk: 1.0e3, softening_temperature_k: %g, softening_rate: %g}]\n"
+                "interactions: [{between: default, normal_damping_ratio: 0.3}]\n"
+                "particles:\n  - name: p\n    material: m\n    temperature_k: %g\n    generator: list\n    items:\n",
+            surroundings[k], h, density, young, nu, critical, rate, temperatures[k]);
+        put_grain(&t, radius, (double[]){0, 0, 0}, (double[]){0, 0, 0}, (double[]){0, 0, 0});
+        put_grain(&t, radius, (double[]){0, 0.1, 0}, (double[]){0, 0, 0}, (double[]){0, 0, 0});
+        physics_case c = case_open(&t);
+        step_limit limit = case_limit(&c);
+        double heating = 3.0 * h * fabs(surroundings[k] - temperatures[k]) / (density * 1e3 * radius), expected = critical / (rate * heating);
+        if (k < 2) {
+            RELATIVE(limit.heat.stiffness, expected, within(1e-9, 8.0 * LAW / (rate / critical))); /* a quotient over one kelvin */
+            double step = 2.0 * log(1.0 / 0.7) / 200.0 * limit.heat.stiffness;
+            assert_true(step < 0.1 * fmin(limit.heat.all, limit.expected_s));
+            RELATIVE(limit.recommended_s, step, 1e-12);
+        } else {
+            assert_true(isinf(limit.heat.stiffness) && limit.recommended_s > 0.0);
+        }
+        case_close(&c);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closed_form),
         cmocka_unit_test(test_impacts),
-        cmocka_unit_test(test_work),
+        cmocka_unit_test(test_work), cmocka_unit_test(test_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
