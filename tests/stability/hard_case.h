@@ -1,5 +1,6 @@
 /* A scene of tests/stability/scenes in a precision, run as a stage runs it, and the margins that are measured on it. CLAST_LONG=1 makes the runs as
- * long as docs/stability.md says; CLAST_MARGINS names a file that every margin is appended to. */
+ * long as docs/stability.md says; CLAST_MARGINS names a file that every margin is appended to; CLAST_TEST_SET holds settings that every scene is
+ * given (settings.h), and CLAST_HARD names of cases, with blanks between, that alone are run. */
 #ifndef CLAST_TESTS_HARD_CASE_H
 #define CLAST_TESTS_HARD_CASE_H
 #include "../physics/case.h"
@@ -8,6 +9,35 @@
 #define LOOK_STEPS 200
 
 static const char *const precisions[] = {"double", "mixed"};
+
+/* True where the case of that name is to be run. */
+static inline bool hard_wanted(const char *name)
+{
+    const char *only = getenv("CLAST_HARD"), *at = only ? strstr(only, name) : NULL;
+    size_t length = strlen(name);
+    for (; at; at = strstr(at + 1, name))
+        if ((at == only || at[-1] == ' ') && (at[length] == '\0' || at[length] == ' '))
+            return true;
+    return !only;
+}
+
+/* True where the settings of all scenes leave that precision its turn. */
+static inline bool hard_has(const char *precision)
+{
+    return !settings_name("precision=") || settings_name(precision);
+}
+
+/* A test of all precisions, named body_all. */
+#define IN_EVERY_PRECISION(body)         \
+    static void body##_all(void **state) \
+    {                                    \
+        (void)state;                     \
+        if (!hard_wanted(#body))         \
+            skip();                      \
+        for (int p = 0; p < 2; p++)      \
+            if (hard_has(precisions[p])) \
+                body(precisions[p]);     \
+    }
 
 static inline bool hard_long(void)
 {
@@ -19,12 +49,16 @@ static inline bool hard_long(void)
 static inline physics_case hard_open(const char *scene, const char *precision, const char *set)
 {
     physics_case c = {0};
-    char path[512], first[64], more[256], *list[8] = {first}, *rest = NULL;
+    char path[512], first[64], more[256], *list[8 + SETTINGS_MAX] = {first}, *rest = NULL;
     int count = 1;
+    settings all;
+    settings_read(&all);
+    for (int k = 0; k < all.count; k++)
+        list[count++] = all.at[k];
     snprintf(path, sizeof path, CLAST_SOURCE_DIR "/tests/stability/scenes/%s.yaml", scene);
     snprintf(first, sizeof first, "precision=%s", precision);
     snprintf(more, sizeof more, "%s", set ? set : "");
-    for (char *one = strtok_r(more, ";", &rest); one && count < 8; one = strtok_r(NULL, ";", &rest))
+    for (char *one = strtok_r(more, ";", &rest); one && count < 8 + SETTINGS_MAX; one = strtok_r(NULL, ";", &rest))
         list[count++] = one;
     MUST(scene_read(path, count, list, &c.scene, why));
     MUST(bed_generate(c.scene, &c.bed, why));
@@ -81,17 +115,18 @@ static inline double hard_energy(physics_case *c)
     return sums.kinetic + sums.rotational + sums.gravitational + case_contact_sums(c).elastic;
 }
 
-/* Notes a measured value that must not be past its bound, and checks it. */
-static inline void hard_margin(const char *name, const char *precision, const char *what, double value, double bound)
+/* Notes a measured value that must not be past its bound, with the steps that the case has run, and checks it. */
+static inline void hard_margin(const physics_case *c, const char *name, const char *what, double value, double bound)
 {
-    const char *path = getenv("CLAST_MARGINS");
+    const char *path = getenv("CLAST_MARGINS"), *precision = c->sim->mixed ? "mixed" : "double";
+    const char *integrator = case_verlet() ? "velocity_verlet" : "semi_implicit_euler";
     FILE *file = path ? fopen(path, "a") : NULL;
     if (file) {
-        fprintf(file, "%s\t%s\t%s\t%.3g\t%.3g\n", name, precision, what, value, bound);
+        fprintf(file, "%s\t%s\t%s\t%s\t%.3g\t%.3g\t%lld\n", name, precision, integrator, what, value, bound, (long long)c->sim->step);
         fclose(file);
     }
     if (!(value <= bound))
-        fail_msg("%s, %s: %s is %.6g, past its bound of %.6g", name, precision, what, value, bound);
+        fail_msg("%s, %s, %s: %s is %.6g, past its bound of %.6g", name, precision, integrator, what, value, bound);
 }
 
 /* Largest distance of any grain from where it was, over the smallest radius. */

@@ -3,18 +3,10 @@
 
 #define G 9.81
 
-#define IN_EVERY_PRECISION(body)         \
-    static void body##_all(void **state) \
-    {                                    \
-        (void)state;                     \
-        for (int p = 0; p < 2; p++)      \
-            body(precisions[p]);         \
-    }
-
 /* ---- piles ---- */
 
 /* Past rest a pile is looked at for `steps` steps with `share` of the limit (0: auto). */
-static void pile_stays(physics_case *c, const char *name, const char *precision, double share, int64_t steps)
+static void pile_stays(physics_case *c, const char *name, double share, int64_t steps)
 {
     double *from = case_field(c, "position"), most = 0.0;
     if (share > 0.0)
@@ -27,8 +19,8 @@ static void pile_stays(physics_case *c, const char *name, const char *precision,
         hard_guard(c);
         most = fmax(most, hard_unrest(c));
     }
-    hard_margin(name, precision, "motion at rest over the sum of m g r", most, 1e-8);
-    hard_margin(name, precision, "move after rest over the smallest radius", hard_move(c, from), 1e-6);
+    hard_margin(c, name, "motion at rest over the sum of m g r", most, 1e-8);
+    hard_margin(c, name, "move after rest over the smallest radius", hard_move(c, from), 1e-6);
     free(from);
 }
 
@@ -37,7 +29,7 @@ static void pile_settles(const char *name, const char *scene, const char *precis
     physics_case c = hard_open(scene, precision, set);
     hard_settle(&c, 1e-9, 2000000);
     hard_auto(&c, 4000, 1.0);
-    pile_stays(&c, name, precision, 0.0, hard_long() ? 1000000 : 8000);
+    pile_stays(&c, name, 0.0, hard_long() ? 1000000 : 8000);
     case_close(&c);
 }
 
@@ -46,8 +38,8 @@ static void static_pile(const char *precision)
     physics_case c = hard_open("stiff_pile", precision, NULL);
     hard_settle(&c, 1e-9, 2000000);
     hard_auto(&c, 4000, 1.0);
-    pile_stays(&c, "static pile", precision, 0.0, hard_long() ? 10000000 : 40000);
-    pile_stays(&c, "stiff grains at 0.98 of the step limit", precision, 0.98, hard_long() ? 1000000 : 8000);
+    pile_stays(&c, "static pile", 0.0, hard_long() ? 10000000 : 40000);
+    pile_stays(&c, "stiff grains at 0.98 of the step limit", 0.98, hard_long() ? 1000000 : 8000);
     case_close(&c);
 }
 IN_EVERY_PRECISION(static_pile)
@@ -81,7 +73,7 @@ static void pile_smooth(const char *precision)
         hard_auto(&c, hard_long() ? 100000 : 1000, 1.0);
         most = fmax(most, hard_energy(&c));
     }
-    hard_margin("friction of 0", precision, "largest energy over that of the start", most / energy, 1.0 + 1e-6);
+    hard_margin(&c, "friction of 0", "largest energy over that of the start", most / energy, 1.0 + 1e-6);
     case_close(&c);
 }
 IN_EVERY_PRECISION(pile_smooth)
@@ -101,10 +93,10 @@ static void fast_drop(const char *precision)
         if (sums.contacts == 0)
             most = fmax(most, hard_energy(&c));
     }
-    hard_margin("impact at 100 m/s", precision, "largest energy between contacts over that of the start", most / energy, 1.0);
-    hard_margin("impact at 100 m/s", precision, "largest overlap over that of a head-on impact of both",
+    hard_margin(&c, "impact at 100 m/s", "largest energy between contacts over that of the start", most / energy, 1.0);
+    hard_margin(&c, "impact at 100 m/s", "largest overlap over that of a head-on impact of both",
                 overlap * 5.0e-3 / hertz_overlap(0.5 * e, 2.5e-3, 0.5 * m, 100.0), 1.5);
-    hard_margin("impact at 100 m/s", precision, "depth in the floor over the radius", 1.0 - lowest / 5.0e-3, 0.1);
+    hard_margin(&c, "impact at 100 m/s", "depth in the floor over the radius", 1.0 - lowest / 5.0e-3, 0.1);
     case_close(&c);
 }
 IN_EVERY_PRECISION(fast_drop)
@@ -113,13 +105,13 @@ static void mass_pair(const char *precision)
 {
     physics_case c = hard_open("mass_pair", precision, NULL);
     double e = 1.0e9 / (1.0 - 0.09), m = sphere_mass(7800.0, 1.0e-3);
-    hard_settle(&c, hard_long() ? 1e-14 : 1e-11, 2000000);
+    hard_settle(&c, hard_long() ? 1e-14 : 1e-9, 2000000);
     double between = hertz_rest(0.5 * e, 1.0e-3 * 1.0e-2 / 1.1e-2, 1000.0 * m * G), floor = hertz_rest(e, 1.0e-3, 1001.0 * m * G);
-    hard_margin("masses 1000 to 1", precision, "overlap of both against Hertz, share", fabs(hard_overlap(&c, 0, 1) / between - 1.0),
-                hard_long() ? 1e-4 : 1e-3);
-    hard_margin("masses 1000 to 1", precision, "overlap at the floor against Hertz, share", fabs(hard_overlap(&c, 0, -1) / floor - 1.0),
-                hard_long() ? 1e-4 : 1e-3);
-    hard_margin("masses 1000 to 1", precision, "motion at rest over the sum of m g r", hard_unrest(&c), 1e-11);
+    hard_margin(&c, "masses 1000 to 1", "overlap of both against Hertz, share", fabs(hard_overlap(&c, 0, 1) / between - 1.0),
+                hard_long() ? 1e-4 : 5e-3);
+    hard_margin(&c, "masses 1000 to 1", "overlap at the floor against Hertz, share", fabs(hard_overlap(&c, 0, -1) / floor - 1.0),
+                hard_long() ? 1e-4 : 5e-3);
+    hard_margin(&c, "masses 1000 to 1", "motion at rest over the sum of m g r", hard_unrest(&c), hard_long() ? 1e-13 : 1e-9);
     case_close(&c);
 }
 IN_EVERY_PRECISION(mass_pair)
@@ -137,10 +129,10 @@ static void ratio_50(const char *precision)
             lowest = fmin(lowest, x[3 * n + 2] / c.bed.radius[n]);
         free(x);
     }
-    hard_margin("radii 50 to 1", precision, "largest energy over that of the start", most,
+    hard_margin(&c, "radii 50 to 1", "largest energy over that of the start", most,
                 1.0 + 1e-9 + (strcmp(precision, "mixed") == 0 ? 1e-6 : 0.0));
-    hard_margin("radii 50 to 1", precision, "largest overlap over the smaller radius", overlap, 0.05);
-    hard_margin("radii 50 to 1", precision, "depth in the floor over the radius", 1.0 - lowest, 0.05);
+    hard_margin(&c, "radii 50 to 1", "largest overlap over the smaller radius", overlap, 0.05);
+    hard_margin(&c, "radii 50 to 1", "depth in the floor over the radius", 1.0 - lowest, 0.05);
     case_close(&c);
 }
 IN_EVERY_PRECISION(ratio_50)
@@ -155,10 +147,8 @@ static void overlapping(const char *precision)
         hard_auto(&c, k < 50 ? 1 : 200, 1.0);
         most = fmax(most, case_sums(&c).kinetic);
     }
-    hard_margin("overlap of half a radius, damped", precision, "largest kinetic energy over the elastic one of the start", most / elastic,
-                0.01);
-    hard_margin("overlap of half a radius, damped", precision, "overlap at the end over the radius", case_contact_sums(&c).overlap_max,
-                0.05);
+    hard_margin(&c, "overlap of half a radius, damped", "largest kinetic energy over the elastic one of the start", most / elastic, 0.01);
+    hard_margin(&c, "overlap of half a radius, damped", "overlap at the end over the radius", case_contact_sums(&c).overlap_max, 0.05);
     case_close(&c);
 }
 IN_EVERY_PRECISION(overlapping)
@@ -183,8 +173,8 @@ static void grazing(const char *precision)
         change = fmax(change, 0.4 * 5.0e-3 * fabs(w[3 * n + 1] - w0[3 * n + 1]) / allowed);
     }
     if (strcmp(precision, "double") == 0)
-        hard_margin("friction without pressure", precision, "change of speed over that of ten times the friction's impulse", change, 1.0);
-    hard_margin("friction without pressure", precision, "energy gained, share", hard_energy(&c) / energy - 1.0, 1e-7);
+        hard_margin(&c, "friction without pressure", "change of speed over that of ten times the friction's impulse", change, 1.0);
+    hard_margin(&c, "friction without pressure", "energy gained, share", hard_energy(&c) / energy - 1.0, 1e-7);
     free(v);
     free(w);
     free(w0);
@@ -209,10 +199,9 @@ static void paddle(const char *precision)
         free(x);
     }
     /* grains are wedged under its edge */
-    hard_margin("wall through a bed", precision, "largest overlap over the smaller radius", overlap, 0.2);
-    hard_margin("wall through a bed", precision, "largest depth in a wall over the radius", outside, 0.2);
-    hard_margin("wall through a bed", precision, "motion once it has passed over the sum of m g r", hard_unrest(&c),
-                hard_long() ? 1e-6 : 10.0);
+    hard_margin(&c, "wall through a bed", "largest overlap over the smaller radius", overlap, 0.2);
+    hard_margin(&c, "wall through a bed", "largest depth in a wall over the radius", outside, 0.2);
+    hard_margin(&c, "wall through a bed", "motion once it has passed over the sum of m g r", hard_unrest(&c), hard_long() ? 1e-6 : 10.0);
     case_close(&c);
 }
 IN_EVERY_PRECISION(paddle)
@@ -233,14 +222,14 @@ static void spinning(const char *precision)
                                      1.0));
         free(q);
     }
-    hard_margin("spin of 1e5 rad/s", precision, "length of the orientation from 1", worst, mixed ? 1e-6 : 1e-12);
+    hard_margin(&c, "spin of 1e5 rad/s", "length of the orientation from 1", worst, mixed ? 1e-6 : 1e-12);
     /* about z: half the angle turned, to what rounding of every step can add */
     double half = 0.5 * 1.0e5 * dt * (double)steps, *q = case_field(&c, "orientation");
     double w = 0.0, z = 0.0;
     for (int k = 0; k < 4; k++)
         if (k != 1 && k != 2)
             *(k == 0 ? &w : &z) = q[4 + k];
-    hard_margin("spin of 1e5 rad/s", precision, "angle turned from spin times time, share",
+    hard_margin(&c, "spin of 1e5 rad/s", "angle turned from spin times time, share",
                 2.0 * fabs(sin(half) * w - cos(half) * z) / (2.0 * half),
                 mixed ? 0x1p-23 : 0x1p-50); /* spin and step are rounded to floats */
     free(q);
@@ -262,9 +251,8 @@ static void free_gas(const char *precision)
         most = fmax(most, hard_energy(&c) / energy);
     }
     /* an increment of a velocity is rounded to 2^-53 or, as a float, to 2^-24; the increments of all add up to a few times the momentum there is */
-    hard_margin("free gas", precision, "change of momentum over sqrt(2 M T)", momentum,
-                strcmp(precision, "mixed") == 0 ? 0x1p-22 : 0x1p-50);
-    hard_margin("free gas", precision, "largest energy over that of the start", most, 1.01);
+    hard_margin(&c, "free gas", "change of momentum over sqrt(2 M T)", momentum, strcmp(precision, "mixed") == 0 ? 0x1p-22 : 0x1p-50);
+    hard_margin(&c, "free gas", "largest energy over that of the start", most, 1.01);
     case_close(&c);
 }
 IN_EVERY_PRECISION(free_gas)

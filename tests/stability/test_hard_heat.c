@@ -28,12 +28,12 @@ static void softening(const char *precision)
         hard_auto(&c, 1000, 1.0);
         most = fmax(most, hard_unrest(&c));
     }
-    hard_margin("softening under load", precision, "largest motion over the sum of m g r", most, 0.1);
-    hard_margin("softening under load", precision, "motion at the end over the sum of m g r", hard_unrest(&c), hard_long() ? 1e-8 : 1e-5);
+    hard_margin(&c, "softening under load", "largest motion over the sum of m g r", most, 0.1);
+    hard_margin(&c, "softening under load", "motion at the end over the sum of m g r", hard_unrest(&c), hard_long() ? 1e-8 : 1e-5);
     for (int k = 0; k < 4; k++) {
         double weight = (4 - k) * m * G, overlap = k == 0 ? hertz_rest(e, 1.0e-3, weight) : hertz_rest(0.5 * e, 0.5e-3, weight);
         double found = k == 0 ? hard_overlap(&c, 0, -1) : hard_overlap(&c, k - 1, k);
-        hard_margin("softening under load", precision, "overlap against Hertz at the floor modulus, share", fabs(found / overlap - 1.0),
+        hard_margin(&c, "softening under load", "overlap against Hertz at the floor modulus, share", fabs(found / overlap - 1.0),
                     hard_long() ? 1e-4 : 0.05);
     }
     case_close(&c);
@@ -49,9 +49,8 @@ static void heating(const char *precision)
         past = fmax(past, fmax(heat.highest / 3000.0 - 1.0, before / heat.lowest - 1.0));
         before = heat.lowest;
     }
-    hard_margin("heating from 1 K to 3000 K", precision, "share of a temperature beyond what heats it", past,
-                is_mixed(precision) ? 1e-6 : 1e-12);
-    hard_margin("heating from 1 K to 3000 K", precision, "coldest grain short of 3000 K at the end, share", 1.0 - before / 3000.0,
+    hard_margin(&c, "heating from 1 K to 3000 K", "share of a temperature beyond what heats it", past, is_mixed(precision) ? 1e-6 : 1e-12);
+    hard_margin(&c, "heating from 1 K to 3000 K", "coldest grain short of 3000 K at the end, share", 1.0 - before / 3000.0,
                 hard_long() ? 1e-6 : 0.7);
     case_close(&c);
 }
@@ -67,10 +66,10 @@ static void radiation(const char *precision)
         hard_auto(&c, 200, 1.0);
         past = fmax(past, heat_of(&c).highest / 5000.0 - 1.0);
     }
-    hard_margin("radiation at 5000 K", precision, "share of a temperature beyond 5000 K", past, is_mixed(precision) ? 1e-6 : 1e-12);
+    hard_margin(&c, "radiation at 5000 K", "share of a temperature beyond 5000 K", past, is_mixed(precision) ? 1e-6 : 1e-12);
     /* alone: dT/dt = 3 B (T_e^4 - T^4) / (rho c r), at rest in t ~ rho c r / (12 B T_e^3), 3.5e-8 s here */
     double gone = c.sim->time * 12.0 * 5.670367e-8 * pow(5000.0, 3) / (1000.0 * 1.0 * 1.0e-6);
-    hard_margin("radiation at 5000 K", precision, "smallest grain short of 5000 K after many times of its own, share",
+    hard_margin(&c, "radiation at 5000 K", "smallest grain short of 5000 K after many times of its own, share",
                 gone > 20.0 ? fabs(case_get(&c, "temperature", 0, 0) / 5000.0 - 1.0) : 1.0, 1e-6);
     case_close(&c);
 }
@@ -93,11 +92,10 @@ static void parting(const char *precision)
         free(now);
     }
     free(before);
-    hard_margin("conduction as contacts open", precision, "share of a temperature beyond the range of both", past,
+    hard_margin(&c, "conduction as contacts open", "share of a temperature beyond the range of both", past,
                 is_mixed(precision) ? 1e-6 : 1e-14);
-    hard_margin("conduction as contacts open", precision, "heat that flows the wrong way, share", wrong,
-                is_mixed(precision) ? 1e-7 : 1e-15);
-    hard_margin("conduction as contacts open", precision, "heat lost or made, share", fabs(heat_of(&c).content / content - 1.0),
+    hard_margin(&c, "conduction as contacts open", "heat that flows the wrong way, share", wrong, is_mixed(precision) ? 1e-7 : 1e-15);
+    hard_margin(&c, "conduction as contacts open", "heat lost or made, share", fabs(heat_of(&c).content / content - 1.0),
                 is_mixed(precision) ? 0x1p-22 : 1e-13);
     case_close(&c);
 }
@@ -122,10 +120,9 @@ static void bonded_chain(const char *precision)
             change = fmax(change, fabs(now.momentum[k] - before.momentum[k]) / scale);
     }
     MUST(bonds_count(c.sim, &bonds, why));
-    hard_margin("bonds at 0.98 of the step limit", precision, "largest energy of motion over that of the start", most, 1.1);
-    hard_margin("bonds at 0.98 of the step limit", precision, "change of momentum over sqrt(2 M T)", change,
-                is_mixed(precision) ? 1e-5 : 1e-11);
-    hard_margin("bonds at 0.98 of the step limit", precision, "bonds lost", (double)(10 - bonds.alive), 0.0);
+    hard_margin(&c, "bonds at 0.98 of the step limit", "largest energy of motion over that of the start", most, 1.1);
+    hard_margin(&c, "bonds at 0.98 of the step limit", "change of momentum over sqrt(2 M T)", change, is_mixed(precision) ? 1e-5 : 1e-11);
+    hard_margin(&c, "bonds at 0.98 of the step limit", "bonds lost", (double)(10 - bonds.alive), 0.0);
     case_close(&c);
 }
 
@@ -138,8 +135,8 @@ static void sticky_pile(const char *precision)
         hard_auto(&c, hard_long() ? 100000 : 1000, 1.0);
         most = fmax(most, hard_unrest(&c));
     }
-    hard_margin("pile of adhesive bonds", precision, "motion at rest over the sum of m g r", most, 1e-8);
-    hard_margin("pile of adhesive bonds", precision, "move after rest over the smallest radius", hard_move(&c, from), 1e-5);
+    hard_margin(&c, "pile of adhesive bonds", "motion at rest over the sum of m g r", most, 1e-8);
+    hard_margin(&c, "pile of adhesive bonds", "move after rest over the smallest radius", hard_move(&c, from), 1e-5);
     free(from);
     case_close(&c);
 }
@@ -166,23 +163,16 @@ static void everything(const char *precision)
     double gained = heat.tally[CLAST_TALLY_SOURCES] + heat.tally[CLAST_TALLY_CONVECTION] + heat.tally[CLAST_TALLY_RADIATION] +
                     heat.tally[CLAST_TALLY_WALLS] + heat.tally[CLAST_TALLY_DISSIPATION];
     double dissipated = e[NORMAL] + e[TANGENTIAL] + e[ROLLING], lost = dissipated + e[BODY];
-    hard_margin("everything at once", precision, "heat that is missing over what went through",
+    hard_margin(&c, "everything at once", "heat that is missing over what went through",
                 fabs(heat.content - start.content - gained) / through, is_mixed(precision) ? 1e-5 : 1e-10);
-    hard_margin("everything at once", precision, "heat of dissipation against the ledger's, share",
+    hard_margin(&c, "everything at once", "heat of dissipation against the ledger's, share",
                 fabs(heat.tally[CLAST_TALLY_DISSIPATION] / dissipated - 1.0), is_mixed(precision) ? 1e-4 : 1e-9);
-    hard_margin("everything at once", precision, "energy that is missing over what was dissipated",
+    hard_margin(&c, "everything at once", "energy that is missing over what was dissipated",
                 fabs(hard_energy(&c) - energy + lost - e[WALLS] - e[STIFFNESS] - e[EXPANSION] - e[GROUPS]) / lost, 0.05);
-    hard_margin("everything at once", precision, "coldest grain below 290 K, K", 290.0 - lowest, 0.0);
+    hard_margin(&c, "everything at once", "coldest grain below 290 K, K", 290.0 - lowest, 0.0);
     case_close(&c);
 }
 
-#define IN_EVERY_PRECISION(body)         \
-    static void body##_all(void **state) \
-    {                                    \
-        (void)state;                     \
-        for (int p = 0; p < 2; p++)      \
-            body(precisions[p]);         \
-    }
 IN_EVERY_PRECISION(softening)
 IN_EVERY_PRECISION(heating)
 IN_EVERY_PRECISION(radiation)
