@@ -5,8 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-static const field field_rolling_spring = {"rolling_spring", PER_RECORD, FIELD_REAL, 3, FIELD_HISTORY, "rad",
-                                           "rolling spring of a contact, in the frame of its owner"};
+static const field field_rolling_spring = {
+    "rolling_spring", PER_RECORD, FIELD_REAL, 3, FIELD_HISTORY, "rad", "rolling spring of a contact, in the frame of its owner"};
+
+enum { ROLLING_TWIST, ROLLING_SHEAR_MODULUS };
 
 static void twist_constant(double choice, char *text, size_t size)
 {
@@ -16,8 +18,7 @@ static void twist_constant(double choice, char *text, size_t size)
 
 static void derive_elastic_plastic(const contact_class *class, const double *option, double *parameter)
 {
-    (void)option;
-    double shear = effective_shear_modulus(class, 0);
+    double shear = effective_shear_modulus(class, option[ROLLING_SHEAR_MODULUS] == 1.0);
     if (interaction_value(class, &property_rolling_friction) == 0.0)
         shear = 0.0; /* a spring that never bears anything must not limit the step */
     parameter[0] = 8.0 * shear;
@@ -28,7 +29,7 @@ static void derive_elastic_plastic(const contact_class *class, const double *opt
 
 static void elastic_plastic_constants(const double *option, char *text, size_t size)
 {
-    twist_constant(option[0], text, size);
+    twist_constant(option[ROLLING_TWIST], text, size);
 }
 
 const law law_elastic_plastic = {
@@ -37,7 +38,8 @@ const law law_elastic_plastic = {
     .doc = "Rolling resistance: a rotational spring and damper that yields at mu_r r* N.",
     .source = "TM Eq. 15-20 as settled in docs/theory.md",
     .kernel_file = "effect/rolling_elastic_plastic.cl",
-    .options = {{"twist", "kept|left_out", 0, 0, 0, "whether relative spin about the normal counts"}},
+    .options = {{"twist", "kept|left_out", 0, 0, 0, "whether relative spin about the normal counts"},
+                {"shear_modulus", "printed|mindlin", 0, 0, 0, "G* as TM Eq. 9 prints it, or 1/G* = sum (2 - nu)/G"}},
     .material_needs = {&property_youngs_modulus, &property_poissons_ratio},
     .interaction_needs = {&property_rolling_friction},
     .pair_fields = {&field_rolling_spring},
