@@ -28,7 +28,8 @@ struct commit_file {
     off_t committed; /* size of the file at the last flush: bytes below belong to it */
     int count, capacity;
     piece *waiting;
-    bool overlapping; /* some of them overlap: then they must go out as they came */
+    bool overlapping; /* some of them may overlap */
+    bool cutting;     /* rows are taken away */
 };
 
 typedef struct driver_file {
@@ -54,7 +55,7 @@ static bool put(commit_file *file, off_t at, const unsigned char *bytes, size_t 
     return true;
 }
 
-/* True when the bytes replace a waiting piece. More pieces than this are only written when much is cut, and then in the given order. */
+/* True when the bytes replace a waiting piece. More pieces than this wait only when much is cut; what they replace is found at the flush. */
 static bool replaced(commit_file *file, off_t at, const unsigned char *bytes, size_t size)
 {
     if (file->count > 4096)
@@ -104,9 +105,77 @@ static void forget(commit_file *file)
     file->overlapping = false;
 }
 
+/* ---- pieces that overlap ---- */
+
+static int by_address(const void *a, const void *b)
+{
+    const piece *p = *(const piece *const *)a, *q = *(const piece *const *)b;
+    return p->at != q->at ? (p->at < q->at ? -1 : 1) : p->order - q->order;
+}
+
+/* The stretch of `count`, sorted by address and apart from each other, that holds the address. */
+static piece *stretch_at(piece *stretch, int count, off_t at)
+{
+    int low = 0, high = count - 1;
+    while (low < high) {
+        int middle = (low + high + 1) / 2;
+        if (stretch[middle].at <= at)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return &stretch[low];
+}
+
+/* Makes one piece of all that overlap, with the bytes that were written last, so that the pieces may go out in any order. */
+static bool merge(commit_file *file)
+{
+    int count = 0;
+    size_t n = (size_t)file->count;
+    piece **sorted = malloc(n * sizeof *sorted), *stretch = calloc(n, sizeof *stretch);
+    bool done = sorted && stretch;
+    for (int k = 0; done && k < file->count; k++)
+        sorted[k] = &file->waiting[k];
+    if (done)
+        qsort(sorted, n, sizeof *sorted, by_address);
+    for (int k = 0; done && k < file->count; k++) {
+        const piece *p = sorted[k];
+        piece *last = count > 0 ? &stretch[count - 1] : NULL;
+        off_t end = p->at + (off_t)p->size;
+        if (last && p->at < last->at + (off_t)last->size)
+            last->size = end > last->at + (off_t)last->size ? (size_t)(end - last->at) : last->size;
+        else
+            stretch[count++] = (piece){p->at, p->size, NULL, p->order};
+    }
+    for (int k = 0; done && k < count; k++)
+        done = (stretch[k].bytes = malloc(stretch[k].size)) != NULL;
+    for (int k = 0; done && k < file->count; k++) { /* as they came */
+        const piece *p = &file->waiting[k];
+        piece *into = stretch_at(stretch, count, p->at);
+        memcpy(into->bytes + (p->at - into->at), p->bytes, p->size);
+    }
+    free(sorted);
+    if (!done) {
+        for (int k = 0; stretch && k < count; k++)
+            free(stretch[k].bytes);
+        free(stretch);
+        file->error = ENOMEM;
+        return false;
+    }
+    forget(file);
+    free(file->waiting);
+    file->waiting = stretch;
+    file->count = count;
+    file->capacity = (int)n;
+    return true;
+}
+
+/* ---- their order ---- */
+
 /* A kill between two of the writes of a commit must not hurt the frames before. So chunk indices come first, parents before children (a
  * split child still holds what its new sibling, already in the file, took over), and then the object headers, whose extents show the
- * new rows. Within these the order of addresses stays: what is created last is committed last. */
+ * new rows. Within these the order of addresses stays: what is created last is committed last. A cut goes the other way round: the extents
+ * hide the rows before anything of them goes. */
 static int rank(const piece *p)
 {
     if (p->size >= 6 && memcmp(p->bytes, "TREE", 4) == 0)
@@ -121,6 +190,20 @@ static int compare(const void *a, const void *b)
     const piece *p = a, *q = b;
     int difference = rank(p) - rank(q);
     return difference ? difference : p->order - q->order;
+}
+
+static int compare_for_cut(const void *a, const void *b)
+{
+    return compare(b, a);
+}
+
+static bool put_in_order(commit_file *file)
+{
+    if (file->overlapping && !merge(file))
+        return false;
+    if (file->count > 1)
+        qsort(file->waiting, (size_t)file->count, sizeof *file->waiting, file->cutting ? compare_for_cut : compare);
+    return true;
 }
 
 static H5FD_t *driver_open(const char *name, unsigned flags, hid_t access, haddr_t largest)
@@ -220,7 +303,7 @@ static herr_t driver_write(H5FD_t *base, H5FD_mem_t type, hid_t transfer, haddr_
         return 0; /* the first failure has been told; libhdf5 would never stop trying to write the rest */
     off_t at = (off_t)address;
     size_t old = at < file->committed ? (size_t)(file->committed - at) : 0;
-    if (type == H5FD_MEM_DRAW)
+    if (type == H5FD_MEM_DRAW && !file->cutting)
         old = 0;
     if (old > size)
         old = size;
@@ -252,8 +335,8 @@ static herr_t driver_flush(H5FD_t *base, hid_t transfer, hbool_t closing)
     commit_file *file = handle->owner;
     if (file->discard || file->error)
         return 0;
-    if (!file->overlapping && file->count > 1)
-        qsort(file->waiting, (size_t)file->count, sizeof *file->waiting, compare);
+    if (!put_in_order(file))
+        return -1;
     if (file->to_disk && fsync(file->descriptor) != 0)
         file->error = errno;
     /* From the first of these on the file may say that the new tail belongs to it: should one of them fail, the tail must stay. */
@@ -270,6 +353,7 @@ static herr_t driver_flush(H5FD_t *base, hid_t transfer, hbool_t closing)
     if (file->error)
         return -1;
     forget(file);
+    file->cutting = false;
     file->committed = (off_t)handle->end_allocated;
     return 0;
 }
@@ -400,6 +484,11 @@ status commit_file_open(const char *path, commit_file **out, failure *why)
 hid_t commit_file_id(const commit_file *file)
 {
     return file->file;
+}
+
+void commit_file_begin_cut(commit_file *file)
+{
+    file->cutting = true;
 }
 
 status commit_file_flush(commit_file *file, bool to_disk, failure *why)

@@ -4,7 +4,7 @@
  * such a file may not open again. Here new bytes go to the end of the file at once, while everything that would change bytes of the last
  * commit waits in memory until the flush. A write that fails leaves the last commit untouched, and from then on the driver drops all
  * writes, so that libhdf5 can be closed in peace, which it otherwise cannot (it keeps trying, at exit too).
- * Chunk data is exempt: it lands in rows that the last commit does not know of. */
+ * Chunk data is exempt: it lands in rows that the last commit does not know of, except while rows are cut. */
 #ifndef CLAST_HOST_COMMIT_FILE_H
 #define CLAST_HOST_COMMIT_FILE_H
 #include "hdf5_common.h"
@@ -17,6 +17,9 @@ status commit_file_create(const char *path, size_t user_block, commit_file **out
 /* Opens for reading and writing. */
 status commit_file_open(const char *path, commit_file **out, failure *why);
 hid_t commit_file_id(const commit_file *file);
+/* What comes until the next flush takes rows away: the last commit knows of these rows, so chunk data waits as well, and the flush goes the
+ * other way round, extents first. */
+void commit_file_begin_cut(commit_file *file);
 /* Everything written so far becomes the file. With `to_disk` it also survives a power cut. */
 status commit_file_flush(commit_file *file, bool to_disk, failure *why);
 /* A STATUS_ERROR with the path and why the last call to libhdf5 failed; the file stays at its last commit. */

@@ -132,3 +132,40 @@ status guard_check(simulation *sim, guard_finding *out, failure *why)
         TRY(check_temperatures(sim, out, why));
     return out->stop ? STATUS_OK : check_overlaps(sim, out, why);
 }
+
+/* The free grain that is deepest in a wall, in shares of its radius. */
+static double deepest(const simulation *sim, const live_contact *contact, int64_t count, const double *radius, const live_contact **which)
+{
+    double most = 0.0;
+    for (int64_t k = 0; k < count; k++) {
+        int32_t id = contact[k].i;
+        double share = contact[k].overlap / radius[id];
+        if (share > most && !sim->group_held[sim->group_of_id[id]]) {
+            most = share;
+            *which = &contact[k];
+        }
+    }
+    return most;
+}
+
+status guard_walls(simulation *sim, failure *why)
+{
+    const scene *s = sim->scene;
+    live_contact *contact = NULL;
+    const live_contact *which = NULL;
+    double *radius = NULL;
+    int64_t count;
+    if (s->guards.every_steps == 0 || sim->table.wall_record_count == 0 || !sim->live.law[SLOT_NORMAL] || sim->live.frozen)
+        return STATUS_OK;
+    TRY(observe_contacts(sim, true, &contact, &count, why));
+    status result = observe_field(sim, "radius", &radius, why);
+    double most = result == STATUS_OK ? deepest(sim, contact, count, radius, &which) : 0.0;
+    if (most > s->guards.overlap_max)
+        result = fail(why, STATUS_BAD_INPUT,
+                      "%s: stage %s: grain %d begins %.3g of its radius deep in the wall `%s`, guards.overlap_max is %g; move it away, or raise "
+                      "guards.overlap_max and list {slot: body, law: viscous_damping}, so that it is pushed out gently",
+                      s->path, s->stage[sim->stage].name, which->i, most, s->wall[which->wall].name, s->guards.overlap_max);
+    free(contact);
+    free(radius);
+    return result;
+}

@@ -166,6 +166,7 @@ status results_continue(const char *path, const results_spec *spec, int64_t step
     status result;
     TRY_GOTO(result, failed, commit_file_open(path, &r->file, why));
     TRY_GOTO(result, failed, results_layout_open(r, why));
+    commit_file_begin_cut(r->file);
     if (!results_layout_cut(r, step))
         TRY_GOTO(result, failed, commit_file_failed(r->file, "cut", why));
     TRY_GOTO(result, failed, commit_file_flush(r->file, false, why));

@@ -414,6 +414,8 @@ typedef struct guard_finding {
     char text[1024];
 } guard_finding;
 status guard_check(simulation *sim, guard_finding *out, failure *why);
+/* Refuses a stage that begins with a free grain deeper in a wall than guards.overlap_max, which would be shot out. */
+status guard_walls(simulation *sim, failure *why);
 
 /* state.c */
 /* Everything needed to go on bit for bit, into a bundle; and back into a simulation made from the same scene. */

@@ -1,17 +1,19 @@
 """Faults: a device call that fails ends a run with one message and exit code 3; a kill or a full disk at any write leaves results that read and a
-checkpoint from which the run goes on bit for bit. CLAST_LONG=1 takes every call and every write in turn, else some of them, chosen by a seed."""
+checkpoint from which the run goes on bit for bit. CLAST_LONG=1 takes every call and every write in turn, CLAST_LONG=N at most N of each kind, else
+some of them, chosen by a seed."""
 import concurrent.futures
 import os
 import random
 import shutil
 import subprocess
 import tempfile
+import time
 import unittest
 
 import h5py
 
 CLAST, FAULTS = os.environ["CLAST"], os.environ["CLAST_FAULTS"]
-LONG = os.environ.get("CLAST_LONG", "0") != "0"
+LONG = int(os.environ.get("CLAST_LONG", "0"))
 OK, ERROR, BAD_INPUT, DEVICE = 0, 1, 2, 3
 
 SCENE = """
@@ -28,6 +30,7 @@ output: {every_s: 0.001, fields: [position, velocity, spin], observables: [kinet
 """
 CALLS = ["clCreateBuffer", "clCreateContext", "clCreateCommandQueue", "clCreateKernel", "clBuildProgram", "clSetKernelArg", "clEnqueueNDRangeKernel",
          "clEnqueueReadBuffer", "clEnqueueWriteBuffer", "clEnqueueFillBuffer", "clEnqueueCopyBuffer"]
+SELDOM = ("clEnqueueCopyBuffer",)  # a run may do without
 FIELDS = ("position", "velocity", "spin")
 
 
@@ -79,11 +82,12 @@ class Faults(unittest.TestCase):
         os.mkdir(folder)
         return folder, [CLAST, "run", self.scene, "--quiet", "--out", "r.h5"]
 
-    def some(self, calls, most):
-        """All of them; or the first, the last and some between."""
-        if LONG or calls <= most:
+    def some(self, calls, most, always=()):
+        """All of them; or the first, the last, those of `always` and some between."""
+        most = {0: most, 1: calls}.get(LONG, LONG)
+        if calls <= most:
             return list(range(1, calls + 1))
-        return sorted({1, calls} | set(random.Random(calls).sample(range(2, calls), most - 2)))
+        return sorted({1, calls, *always} | set(random.Random(calls).sample(range(2, calls), most - 2)))
 
     def for_each(self, work, items):
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
@@ -96,7 +100,7 @@ class Faults(unittest.TestCase):
             folder, command = self.fresh("count")
             done, calls = self.faulty(command, folder, call)
             self.assertEqual(done.returncode, OK, done.stderr)
-            if call != "clEnqueueCopyBuffer":
+            if call not in SELDOM:
                 self.assertGreater(calls, 0, call)
 
             def one(at):
@@ -119,14 +123,27 @@ class Faults(unittest.TestCase):
     def is_beginning(self, result):
         try:
             times, bits = frames(result)
-        except KeyError:
+        except (KeyError, IndexError):
             return False
         return list(times) == list(self.times[: len(times)]) and bits == self.bits[: len(bits)]
+
+    @staticmethod
+    def never_finished(result):
+        """Killed while the file was made: it is no results file yet, begins with a hole, and the next run may have its name."""
+        with open(result, "rb") as file:
+            start = file.read(48)
+        return not any(start)
 
     def goes_on(self, folder):
         """None, or what is wrong with what a fault has left."""
         result, checkpoint = os.path.join(folder, "r.h5"), os.path.join(folder, "r.checkpoint.h5")
-        if os.path.exists(result) and os.path.getsize(result) > 0:
+        if os.path.exists(result) and self.never_finished(result):
+            if os.path.exists(checkpoint):
+                return "there is a checkpoint, but no results"
+            done = subprocess.run([CLAST, "run", self.scene, "--quiet", "--out", "r.h5"], capture_output=True, text=True, cwd=folder)
+            if done.returncode != OK:
+                return f"the name is not free again: {done.stderr}"
+        if os.path.exists(result):
             try:
                 if not self.is_beginning(result):
                     return "the results are not those of the run so far"
@@ -157,11 +174,29 @@ class Faults(unittest.TestCase):
             shutil.rmtree(folder)
             return problem and f"{action} at write {at} of {calls}: {problem}"
 
-        self.for_each(one, self.some(calls, most))
+        self.for_each(one, self.some(calls, most, always=(12,)))  # before the file is finished
         self.assertGreater(sum(resumed), 0)
 
     def test_killed(self):
         self.writes("kill", (-9,), 10)
+
+    def test_killed_at_any_moment(self):
+        """Whatever the clock says: also within calls of the device and between writes."""
+        folder, command = self.fresh("clock")
+        begin = time.monotonic()
+        subprocess.run(command, cwd=folder, check=True)
+        whole = time.monotonic() - begin
+
+        def one(at):
+            folder, command = self.fresh(f"moment.{at}")
+            with subprocess.Popen(command, cwd=folder, stderr=subprocess.DEVNULL) as going:
+                time.sleep(random.Random(at).random() * whole)
+                going.kill()
+            problem = self.goes_on(folder)
+            shutil.rmtree(folder)
+            return problem and f"killed after a random time, {at}: {problem}"
+
+        self.for_each(one, range({0: 3, 1: 300}.get(LONG, LONG)))
 
     def test_full_disk(self):
         self.writes("full", (ERROR, BAD_INPUT), 10)
@@ -190,7 +225,7 @@ class Faults(unittest.TestCase):
             shutil.rmtree(folder)
             return problem and f"killed at write {at} of {calls} of resume: {problem}"
 
-        self.for_each(one, self.some(calls, 8))
+        self.for_each(one, self.some(calls, 8, always=(5, 12, 20, 25)))  # within the cut
 
 
 if __name__ == "__main__":

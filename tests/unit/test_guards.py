@@ -91,6 +91,15 @@ class Guards(unittest.TestCase):
         self.assertEqual(done.returncode, BAD_INPUT)
         self.assertIn("grains 0 and 1 are at the same place", done.stderr)
 
+    def test_grain_in_a_wall_at_the_start(self):
+        """The same at walls; one that is held may stand in a wall."""
+        floor = "walls: [{name: floor, shape: plane, point_m: [0, 0, -0.5e-3], normal: [0, 0, 1]}]\n"
+        done = self.run_scene(scene((0, 0, 0), more=floor))
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        self.assertIn("grain 0 begins 0.5 of its radius deep in the wall `floor`, guards.overlap_max is 0.3", done.stderr)
+        self.assertEqual(self.run_scene(scene((0, 0, 0), more=floor), "--set", "guards.overlap_max=0.6").returncode, OK)
+        self.assertEqual(self.run_scene(scene((0, 0, 0), more=floor), "--set", "particles[grains].motion=fixed").returncode, OK)
+
     def test_move(self):
         # the wall, far away, holds the frame: without one, moves count against the bed's common velocity
         wall = "walls: [{name: far, shape: plane, point_m: [-5, 0, 0], normal: [1, 0, 0]}]\n"
