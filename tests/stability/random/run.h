@@ -1,0 +1,17 @@
+/* Runs a random scene and looks at what must hold. */
+#ifndef CLAST_TESTS_RANDOM_RUN_H
+#define CLAST_TESTS_RANDOM_RUN_H
+#include "device.h"
+
+typedef enum verdict { KEPT, REFUSED, STOPPED, BROKEN } verdict;
+
+typedef struct outcome {
+    verdict verdict;
+    char what[64]; /* the invariant */
+    char text[1024];
+} outcome;
+
+/* `text`: what a scene file holds. */
+outcome run_text(device *on, const char *text, const char *name);
+
+#endif
