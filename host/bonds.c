@@ -73,7 +73,8 @@ status bonds_after(simulation *sim, failure *why)
 
 bool bonds_are_kept(const simulation *sim)
 {
-    return sim->live.law[SLOT_BOND] && sim->live.law[SLOT_BOND]->keeps_bonds;
+    const law *bond = sim->live.law[SLOT_BOND];
+    return bond && bond->keeps_bonds && bond->keeps_bonds(sim->live.option[SLOT_BOND]);
 }
 
 /* Indices are no longer those of the ids once grains have been sorted, so the array that leads from ids to them is free. */

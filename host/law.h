@@ -117,7 +117,8 @@ typedef struct law {
     const field *particle_fields[LAW_ARGUMENTS_MAX]; /* what it adds to the particle stage's */
     /* Largest gap over which it acts on bodies in contact, for grains of that radius at most. NULL: none. */
     double (*reach)(const contact_class *class, double radius);
-    bool keeps_bonds; /* its bonds hold at any distance: no new table may lose them */
+    /* True where its bonds hold at any distance, so that no new table may lose them. NULL: never. */
+    bool (*keeps_bonds)(const double *option);
     bool turns; /* acts on spins, which must then be followed */
     bool reads_temperature; /* of the bodies of a contact */
     const char *parameters[LAW_PARAMETERS_MAX];      /* constants a contact class carries for it, in SI */

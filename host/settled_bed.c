@@ -27,7 +27,7 @@
 #define SETTLE_MAX_S   3.0
 #define SETTLE_CHECK   500  /* steps between looks at the energy */
 #define SETTLE_DAMPING 20.0 /* 1/s */
-#define BONDING_STRAIN 0.037 /* of 100,000 grains */
+#define BONDING_STRAIN 0.055 /* of 100,000 grains */
 
 /* Sum of volumes of so many grains on average: <r^3> of the uniform distribution. */
 static double solid_volume(double particles)
@@ -75,14 +75,16 @@ static void print_walls(FILE *out, double x, double y, bool hot)
     fprintf(out, "  - {name: north, shape: plane, point_m: [0, %.17g, 0], normal: [0, -1, 0]}\n", y);
 }
 
-/* Adhesion with which half of the contacts of the bed are deeper than the critical overlap, and bond: overlaps go as the load to the power 2/3, and
- * the load as the height. */
+/* Adhesion with which half of the contacts of the bed are deeper than the critical overlap once it rests under it: overlaps go as the load to the
+ * power 2/3, and the load as the height. `particles`: of the whole bed. */
 static double bonding_strain(int64_t particles)
 {
     return BONDING_STRAIN * pow(1e-5 * (double)particles, 2.0 / 9.0);
 }
 
-static void print_scene(FILE *out, int64_t particles, double x, double y, double height, unsigned effects, bool settling, bool slippery)
+/* A bed settles under bonds that form whenever they can; where it then rests, those contacts are bonded that are deeper than the critical overlap,
+ * and the same ones bond when it is taken up again. */
+static void print_scene(FILE *out, int64_t whole, int64_t particles, double x, double y, double height, unsigned effects, bool settling, bool slippery)
 {
     static const char *const sides[] = {"west", "south", "east", "north"};
     fprintf(out, "title: Settled bed\ngravity_m_s2: [0, 0, -%g]\neffects:\n", GRAVITY);
@@ -96,16 +98,16 @@ static void print_scene(FILE *out, int64_t particles, double x, double y, double
     if (effects & BED_RADIATION)
         fprintf(out, "  - {slot: radiation, law: stefan_boltzmann}\n");
     if (effects & BED_BONDS)
-        fprintf(out, "  - {slot: bond, law: adhesion, criterion: at_time}\n");
+        fprintf(out, "  - {slot: bond, law: adhesion, criterion: %s}\n", settling ? "always" : "at_time");
     if (settling)
         fprintf(out, "  - {slot: body, law: viscous_damping, coefficient: %g}\n", SETTLE_DAMPING);
     if (effects & (BED_CONVECTION | BED_RADIATION))
         fprintf(out, "environment: {temperature_k: 350}\n");
     fprintf(out, "materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3, conductivity_w_mk: 1,\n"
                  "             specific_heat_j_kgk: 800, emissivity: 0.9}]\ninteractions:\n");
-    fprintf(out, "  - {between: default, restitution: 0.5, friction_static: 0.5, rolling_friction: 0.01, bond_equilibrium_strain: %.6g,\n     bond_damping_ratio: 0.3}\n", bonding_strain(particles));
-    for (int s = 0; s < 4 && slippery; s++)
-        fprintf(out, "  - {between: [glass, %s], friction_static: 0}\n", sides[s]);
+    fprintf(out, "  - {between: default, restitution: 0.5, friction_static: 0.5, rolling_friction: 0.01, bond_equilibrium_strain: %.6g,\n     bond_damping_ratio: 0.3}\n", bonding_strain(whole));
+    for (int s = 0; s < 4 && slippery; s++) /* half the overlap and twice r* of a contact with the mirror image */
+        fprintf(out, "  - {between: [glass, %s], friction_static: 0, bond_equilibrium_strain: %.6g}\n", sides[s], 0.25 * bonding_strain(whole));
     fprintf(out, "particles:\n  - {name: bed, material: glass, generator: random, count: %lld, temperature_k: 300,\n", (long long)particles);
     fprintf(out, "     radius_m: {distribution: uniform, low: %.17g, high: %.17g},\n", RADIUS_M * (1.0 - RADIUS_SPREAD),
             RADIUS_M * (1.0 + RADIUS_SPREAD));
@@ -114,15 +116,15 @@ static void print_scene(FILE *out, int64_t particles, double x, double y, double
     fprintf(out, "stages: [{name: rest, until: {steps: 1}}]\n");
 }
 
-static status make_scene(int64_t particles, double x, double y, double height, unsigned effects, bool settling, bool slippery, scene **out,
-                         failure *why)
+static status make_scene(int64_t whole, int64_t particles, double x, double y, double height, unsigned effects, bool settling, bool slippery,
+                         scene **out, failure *why)
 {
     char *text = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&text, &size);
     if (!stream)
         return fail(why, STATUS_ERROR, "out of memory");
-    print_scene(stream, particles, x, y, height, effects, settling, slippery);
+    print_scene(stream, whole, particles, x, y, height, effects, settling, slippery);
     fclose(stream);
     status result = scene_read_text(text, "settled bed", 0, NULL, out, why);
     free(text);
@@ -166,38 +168,68 @@ static status settle(simulation *sim, failure *why)
     return STATUS_OK;
 }
 
-static status pour(const bed_layout *l, device *device, const char *kernels, bed *out, failure *why)
+typedef struct bed_request {
+    int64_t particles; /* of the whole bed */
+    unsigned effects;  /* under which it rests: none, or BED_BONDS */
+    device *device;
+    const char *kernels;
+} bed_request;
+
+static void find_bounds(bed *b)
 {
-    scene *poured = NULL;
+    for (int c = 0; c < 3; c++) {
+        b->low[c] = INFINITY;
+        b->high[c] = -INFINITY;
+    }
+    for (int64_t i = 0; i < b->count; i++)
+        for (int c = 0; c < 3; c++) {
+            b->low[c] = fmin(b->low[c], b->position[i][c]);
+            b->high[c] = fmax(b->high[c], b->position[i][c]);
+        }
+}
+
+/* Lets the grains come to rest under the effects. */
+static status come_to_rest(const scene *under, device *device, const char *kernels, bed *grains, failure *why)
+{
     simulation *sim = NULL;
-    bool slippery = l->columns * l->rows > 1;
-    TRY(make_scene(l->part, l->part_x, l->part_y, l->height, 0, true, slippery, &poured, why));
-    if (!device->info.fp64)
-        poured->precision = PRECISION_MIXED;
-    status result = bed_generate(poured, out, why);
-    if (result == STATUS_OK)
-        result = simulation_create(poured, out, device, kernels, &sim, why);
+    find_bounds(grains);
+    status result = simulation_create(under, grains, device, kernels, &sim, why);
     if (result == STATUS_OK)
         result = settle(sim, why);
     if (result == STATUS_OK)
-        result = take_field(sim, "position", out->position, why);
+        result = take_field(sim, "position", grains->position, why);
     if (result == STATUS_OK)
-        result = take_field(sim, "velocity", out->velocity, why);
+        result = take_field(sim, "velocity", grains->velocity, why);
     if (result == STATUS_OK)
-        result = take_field(sim, "spin", out->spin, why);
+        result = take_field(sim, "spin", grains->spin, why);
     simulation_free(sim);
+    return result;
+}
+
+/* `grains` has those of the bed without bonds where it is to be made with bonds. */
+static status pour(const bed_request *of, const bed_layout *l, bed *grains, failure *why)
+{
+    scene *poured = NULL;
+    bool bonds = of->effects & BED_BONDS;
+    TRY(make_scene(of->particles, l->part, l->part_x, l->part_y, l->height, of->effects & BED_BONDS, true, l->columns * l->rows > 1, &poured, why));
+    if (!of->device->info.fp64)
+        poured->precision = PRECISION_MIXED;
+    status result = bonds ? STATUS_OK : bed_generate(poured, grains, why);
+    if (result == STATUS_OK)
+        result = come_to_rest(poured, of->device, of->kernels, grains, why);
     scene_free(poured);
     return result;
 }
 
 /* ---- the cache ---- */
 
-static bool cache_file(const bed_layout *l, int64_t particles, char *path, size_t size)
+static bool cache_file(const bed_request *of, const bed_layout *l, char *path, size_t size)
 {
     char directory[3072];
     if (!cache_directory(directory, sizeof directory))
         return false;
-    snprintf(path, size, "%s/settled-bed-%d-%lld-%dx%d.h5", directory, CACHE_VERSION, (long long)particles, l->columns, l->rows);
+    snprintf(path, size, "%s/settled-bed-%d-%lld-%dx%d%s.h5", directory, CACHE_VERSION, (long long)of->particles, l->columns, l->rows,
+             of->effects ? "-bonds" : "");
     return true;
 }
 
@@ -264,15 +296,20 @@ static void cache_store(const char *path, const bed *of)
     bundle_free(&out);
 }
 
-static status get_part(const bed_layout *l, int64_t particles, device *device, const char *kernels, bed *out, failure *why)
+static status get_part(const bed_request *of, const bed_layout *l, bed *out, failure *why)
 {
     char path[4096];
-    bool cached = cache_file(l, particles, path, sizeof path);
+    bool cached = cache_file(of, l, path, sizeof path);
     *out = (bed){0};
     if (cached && cache_load(path, l->part, out))
         return STATUS_OK;
-    fprintf(stderr, "settling %lld grains, once for all later runs ...\n", (long long)l->part);
-    status result = pour(l, device, kernels, out, why);
+    if (of->effects) {
+        bed_request plain = *of;
+        plain.effects = 0;
+        TRY(get_part(&plain, l, out, why));
+    }
+    fprintf(stderr, "settling %lld grains%s, once for all later runs ...\n", (long long)l->part, of->effects ? " under bonds" : "");
+    status result = pour(of, l, out, why);
     if (result == STATUS_OK && cached)
         cache_store(path, out);
     if (result != STATUS_OK)
@@ -318,15 +355,7 @@ status settled_bed_assemble(const bed_layout *l, const bed *part, int64_t partic
             for (int64_t i = 0; i < part->count; i++)
                 if (i != top || row * l->columns + column >= l->surplus)
                     place_image(l, part, i, column, row, out, to++);
-    for (int c = 0; c < 3; c++) {
-        out->low[c] = INFINITY;
-        out->high[c] = -INFINITY;
-    }
-    for (int64_t i = 0; i < out->count; i++)
-        for (int c = 0; c < 3; c++) {
-            out->low[c] = fmin(out->low[c], out->position[i][c]);
-            out->high[c] = fmax(out->high[c], out->position[i][c]);
-        }
+    find_bounds(out);
     return STATUS_OK;
 }
 
@@ -338,11 +367,11 @@ status settled_bed_make(int64_t particles, unsigned effects, device *device, con
                     (long long)particles);
     bed_layout l = settled_bed_layout(particles);
     bed part;
-    TRY(get_part(&l, particles, device, kernels, &part, why));
+    TRY(get_part(&(bed_request){particles, effects & BED_BONDS, device, kernels}, &l, &part, why));
     status result = settled_bed_assemble(&l, &part, particles, &out->bed, why);
     bed_free(&part);
     if (result == STATUS_OK)
-        result = make_scene(particles, l.side, l.side, l.height, effects, false, false, &out->scene, why);
+        result = make_scene(particles, particles, l.side, l.side, l.height, effects, false, false, &out->scene, why);
     out->side_m = l.side;
     if (result != STATUS_OK)
         settled_bed_free(out);

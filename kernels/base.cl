@@ -6,10 +6,25 @@
 typedef clast_f64 real;
 typedef double4 real4;
 #define R(x) ((real)(x))
+/* How a real stands in memory, for what takes it apart: bits behind the exponent, its bias, and the leading half of the rest. */
+typedef ulong real_bits;
+#define REAL_BITS(x) as_ulong(x)
+#define REAL_OF_BITS(b) as_double(b)
+#define REAL_FRACTION_BITS 52
+#define REAL_BIAS 1023
+#define REAL_LOW_BITS 0x7ffffffUL
+#define REAL_ROOT_HALF 0x3fe6a09e667f3bcdUL
 #else
 typedef float real;
 typedef float4 real4;
 #define R(x) ((real)(x##f))
+typedef uint real_bits;
+#define REAL_BITS(x) as_uint(x)
+#define REAL_OF_BITS(b) as_float(b)
+#define REAL_FRACTION_BITS 23
+#define REAL_BIAS 127
+#define REAL_LOW_BITS 0xfffU
+#define REAL_ROOT_HALF 0x3f3504f3U
 #endif
 
 #define INLINE static inline __attribute__((always_inline))
@@ -80,6 +95,62 @@ INLINE real cube_root(real x)
 {
     real f = sqrt(sqrt(x)), g = sqrt(sqrt(f)), h = sqrt(sqrt(g));
     return cube_root_step(cube_root_step(cube_root_step(f * g * h, x), x), x);
+}
+
+/* x = 2^e m with m between the roots of 1/2 and 2: e, and log2(m) = 2 artanh(t)/ln 2 with t = (m - 1)/(m + 1), |t| < 0.1716, by its series. */
+INLINE real logarithm_of_rest(real x, real *e)
+{
+    real_bits above = REAL_BITS(x) - (real_bits)REAL_ROOT_HALF + ((real_bits)REAL_BIAS << REAL_FRACTION_BITS);
+    *e = (real)((int)(above >> REAL_FRACTION_BITS) - REAL_BIAS);
+    real m = REAL_OF_BITS((above & (((real_bits)1 << REAL_FRACTION_BITS) - 1)) + (real_bits)REAL_ROOT_HALF);
+    real t = (m - R(1.0)) / (m + R(1.0)), t2 = t * t;
+    real series = R(1.0) / R(21.0);
+    series = R(1.0) / R(19.0) + t2 * series;
+    series = R(1.0) / R(17.0) + t2 * series;
+    series = R(1.0) / R(15.0) + t2 * series;
+    series = R(1.0) / R(13.0) + t2 * series;
+    series = R(1.0) / R(11.0) + t2 * series;
+    series = R(1.0) / R(9.0) + t2 * series;
+    series = R(1.0) / R(7.0) + t2 * series;
+    series = R(1.0) / R(5.0) + t2 * series;
+    series = R(1.0) / R(3.0) + t2 * series;
+    series = R(1.0) + t2 * series;
+    return R(2.88539008177792681) * t * series;
+}
+
+/* 2^(n + r) for a whole number n and |r| <= 1/2. */
+INLINE real power_of_two(real n, real r)
+{
+    real u = R(0.693147180559945309) * r;
+    real series = R(1.0) + u * (R(1.0) / R(14.0));
+    series = R(1.0) + u * (R(1.0) / R(13.0)) * series;
+    series = R(1.0) + u * (R(1.0) / R(12.0)) * series;
+    series = R(1.0) + u * (R(1.0) / R(11.0)) * series;
+    series = R(1.0) + u * (R(1.0) / R(10.0)) * series;
+    series = R(1.0) + u * (R(1.0) / R(9.0)) * series;
+    series = R(1.0) + u * (R(1.0) / R(8.0)) * series;
+    series = R(1.0) + u * (R(1.0) / R(7.0)) * series;
+    series = R(1.0) + u * (R(1.0) / R(6.0)) * series;
+    series = R(1.0) + u * (R(1.0) / R(5.0)) * series;
+    series = R(1.0) + u * R(0.25) * series;
+    series = R(1.0) + u * (R(1.0) / R(3.0)) * series;
+    series = R(1.0) + u * R(0.5) * series;
+    series = R(1.0) + u * series;
+    return series * REAL_OF_BITS((real_bits)((int)n + REAL_BIAS) << REAL_FRACTION_BITS);
+}
+
+/* x^y for x > 0 by arithmetic alone, where a call of pow() would end vectorisation; to a few last places. x and the result are normal numbers;
+ * beyond their range it stops there. The exponent of x times the leading half of y is exact, so that what is left is small and known well. */
+INLINE real power_of(real x, real y)
+{
+    real e, l = logarithm_of_rest(x, &e);
+    real leading = REAL_OF_BITS(REAL_BITS(y) & ~(real_bits)REAL_LOW_BITS);
+    real exact_part = leading * e, rest = (y - leading) * e + y * l;
+    real n = floor(exact_part + rest + R(0.5));
+    n = n < (real)(1 - REAL_BIAS) ? (real)(1 - REAL_BIAS) : n > (real)REAL_BIAS ? (real)REAL_BIAS : n;
+    real r = (exact_part - n) + rest;
+    r = r < R(-0.5) ? R(-0.5) : r > R(0.5) ? R(0.5) : r;
+    return power_of_two(n, r);
 }
 
 /* Three exact numbers in a row, as reals and with all their bits; a macro, since they may stand in private or in global memory. */

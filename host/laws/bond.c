@@ -135,7 +135,7 @@ const law *bonding_of(const law *bond, const double *option)
 
 /* ---- adhesion ---- */
 
-enum { ADHESION_CLAMPS = BOND_OWN, ADHESION_FOLLOWS };
+enum { ADHESION_CLAMPS = BOND_OWN, ADHESION_FOLLOWS, ADHESION_MELTS };
 
 static void derive_adhesion(const contact_class *class, const double *option, double *parameter)
 {
@@ -147,6 +147,13 @@ static void derive_adhesion(const contact_class *class, const double *option, do
     parameter[3] = 2.0 * pull.damping_ratio;
     parameter[4] = fmin(M_PI * interaction_value(class, &property_bond_tensile_strength), 1e30);
     parameter[5] = fmin(M_PI * interaction_value(class, &property_bond_shear_strength), 1e15); /* its square stays a number in float */
+    repulsion push = repulsion_of(class);
+    double apart = push.exponent - pull.exponent;
+    parameter[6] = pow(pull.exponent * pull.coefficient / (push.exponent * push.coefficient), 1.0 / apart); /* d_crit = this r*^next */
+    parameter[7] = (pull.radius_power - push.radius_power) / apart;
+    parameter[8] = -1.0 / apart;
+    parameter[9] = pull.exponent / push.exponent;
+    parameter[10] = pow(push.exponent / pull.exponent, 1.0 / apart);
 }
 
 static void adhesion_constants(const double *option, char *text, size_t size)
@@ -155,6 +162,13 @@ static void adhesion_constants(const double *option, char *text, size_t size)
     snprintf(text + used, size - used, "#define ADHESION_CLAMPS %d\n", option[ADHESION_CLAMPS] == 0.0);
     used = strlen(text);
     snprintf(text + used, size - used, "#define ADHESION_FOLLOWS %d\n", option[ADHESION_FOLLOWS] == 0.0);
+    used = strlen(text);
+    snprintf(text + used, size - used, "#define ADHESION_MELTS %d\n", option[ADHESION_MELTS] != 0.0);
+}
+
+static bool adhesion_keeps_bonds(const double *option)
+{
+    return option[ADHESION_MELTS] != 0.0;
 }
 
 /* Exponents of all contacts that bond, in quarters, where they are whole numbers and the same; false where they are not. */
@@ -215,12 +229,18 @@ const law law_adhesion = {
                 {"clamps", "printed|none", 0, 0, 0,
                  "as printed, no net pull beyond the equilibrium overlap and no net push short of it, or spring and damper as they add up"},
                 {"adhesion_follows_modulus", "true|false", 0, 0, 0,
-                 "where moduli soften, adhesion softens with E*, so that the equilibrium overlap stays; or it is constant"}},
+                 "where moduli soften, adhesion softens with E*, so that the equilibrium overlap stays; or it is constant"},
+                {"while_met", "solid|liquid", 0, 0, 0,
+                 "what a bond is while its criterion is met: as later, when it ends at the critical overlap, or at a strength; or liquid (strengths do "
+                 "not count), and once the criterion is no longer met solid for good: then it does not end at the critical overlap, but resists any "
+                 "pull with the stiffness that it has at rest, and only a strength, over the area of the neck at rest, ends it"}},
     .pair_fields = {&field_bonded},
-    .parameters = {"ADHESION_STIFFNESS", "ADHESION_RADIUS_POWER", "ADHESION_EXPONENT", "ADHESION_DAMPING", "ADHESION_TENSILE", "ADHESION_SHEAR"},
+    .parameters = {"ADHESION_STIFFNESS", "ADHESION_RADIUS_POWER", "ADHESION_EXPONENT", "ADHESION_DAMPING", "ADHESION_TENSILE", "ADHESION_SHEAR",
+                   "ADHESION_CRITICAL", "ADHESION_CRITICAL_POWER", "ADHESION_CRITICAL_MODULUS", "ADHESION_SHARE", "ADHESION_REST"},
     .derive = derive_adhesion,
     .constants = adhesion_constants,
     .scene_constants = adhesion_scene_constants,
+    .keeps_bonds = adhesion_keeps_bonds,
 };
 
 /* ---- parallel ---- */
@@ -256,6 +276,12 @@ static double parallel_reach(const contact_class *class, double radius)
     return pair_bonds(class) ? interaction_value(class, &property_bond_gap_ratio) * radius : 0.0;
 }
 
+static bool beams_keep_bonds(const double *option)
+{
+    (void)option;
+    return true;
+}
+
 const law law_parallel = {
     .name = "parallel",
     .slot = SLOT_BOND,
@@ -274,7 +300,7 @@ const law law_parallel = {
     .derive = derive_parallel,
     .constants = parallel_constants,
     .reach = parallel_reach,
-    .keeps_bonds = true,
+    .keeps_bonds = beams_keep_bonds,
     .turns = true,
 };
 
@@ -321,7 +347,7 @@ const law law_sintering = {
                    "SINTER_ACTIVATION", "SINTER_PULL", "SINTER_LEAST", "SINTER_MOST", "SINTER_GAP"},
     .derive = derive_sintering,
     .reach = parallel_reach,
-    .keeps_bonds = true,
+    .keeps_bonds = beams_keep_bonds,
     .turns = true,
     .reads_temperature = true,
 };

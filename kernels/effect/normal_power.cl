@@ -12,7 +12,7 @@
 INLINE real normal_spring(const contact *c)
 {
     bool touches = c->overlap > R(0.0);
-    real force = modulus_normal(c) * c->value[NORMAL_STIFFNESS] * pow(touches ? c->overlap : R(1.0), c->value[NORMAL_EXPONENT]);
+    real force = modulus_normal(c) * c->value[NORMAL_STIFFNESS] * power_of(touches ? c->overlap : R(1.0), c->value[NORMAL_EXPONENT]);
     return touches ? force : R(0.0);
 }
 

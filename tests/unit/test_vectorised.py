@@ -26,7 +26,7 @@ effects: [EFFECTS]
 materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3, conductivity_w_mk: 1, specific_heat_j_kgk: 800}]
 interactions: [{between: default, restitution: 0.5, friction_static: 0.4, friction_dynamic: DYNAMIC, rolling_friction: 0.02,
                  bond_equilibrium_strain: 0.01, bond_threshold: 1000, bond_exponent: EXPONENT, bond_youngs_modulus_pa: 1.0e6, surface_energy_j_m2: 1,
-                 boundary_diffusion_m3_s: 1.0e-15, atomic_volume_m3: 1.0e-29, activation_energy_j_mol: 1.0e5, normal_stiffness_n_m: 1000, tangential_stiffness_n_m: 500}]
+                 boundary_diffusion_m3_s: 1.0e-15, atomic_volume_m3: 1.0e-29, activation_energy_j_mol: 1.0e5, repulsion_stiffness: 1.0e5, normal_stiffness_n_m: 1000, tangential_stiffness_n_m: 500}]
 particles:
   - {name: bed, material: glass, generator: lattice, lattice: simple_cubic, counts: [5, 5, 5], spacing_m: 2.0e-3, radius_m: 1.0e-3, temperature_k: 300}
 WALLS
@@ -104,6 +104,10 @@ class Vectorised(unittest.TestCase):
 
     def test_adhesion(self):
         self.check(MINDLIN + ROLLING + ADHESION, PLANE)
+
+    def test_powers(self):
+        bond = ", {slot: bond, law: adhesion, criterion: at_time, while_met: liquid}"
+        self.check("{slot: normal, law: power}, {slot: tangential, law: mindlin}" + bond, PLANE, exponent="1.1")
 
 
 if __name__ == "__main__":
