@@ -27,6 +27,7 @@
 #define SETTLE_MAX_S   3.0
 #define SETTLE_CHECK   500  /* steps between looks at the energy */
 #define SETTLE_DAMPING 20.0 /* 1/s */
+#define REST_DAMPING   600.0 /* 1/s, of a bed with bonds that is taken up without the history of its friction: critical for the slowest waves in it */
 #define BONDING_STRAIN 0.055 /* of 100,000 grains */
 
 /* Sum of volumes of so many grains on average: <r^3> of the uniform distribution. */
@@ -99,8 +100,9 @@ static void print_scene(FILE *out, int64_t whole, int64_t particles, double x, d
         fprintf(out, "  - {slot: radiation, law: stefan_boltzmann}\n");
     if (effects & BED_BONDS)
         fprintf(out, "  - {slot: bond, law: adhesion, criterion: %s}\n", settling ? "always" : "at_time");
-    if (settling)
-        fprintf(out, "  - {slot: body, law: viscous_damping, coefficient: %g}\n", SETTLE_DAMPING);
+    bool damped = (effects & BED_BONDS) && !settling;
+    if (settling || damped)
+        fprintf(out, "  - {slot: body, law: viscous_damping, coefficient: %g}\n", settling ? SETTLE_DAMPING : REST_DAMPING);
     if (effects & (BED_CONVECTION | BED_RADIATION))
         fprintf(out, "environment: {temperature_k: 350}\n");
     fprintf(out, "materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3, conductivity_w_mk: 1,\n"
@@ -113,7 +115,7 @@ static void print_scene(FILE *out, int64_t whole, int64_t particles, double x, d
             RADIUS_M * (1.0 + RADIUS_SPREAD));
     fprintf(out, "     region: {low_m: [0, 0, 0], high_m: [%.17g, %.17g, %.17g]}}\n", x, y, height);
     print_walls(out, x, y, effects & BED_CONDUCTION);
-    fprintf(out, "stages: [{name: rest, until: {steps: 1}}]\n");
+    fprintf(out, "stages: [{name: rest, until: {steps: 1}}%s]\n", damped ? ", {name: at_rest, until: {steps: 1}, effects_off: [body]}" : "");
 }
 
 static status make_scene(int64_t whole, int64_t particles, double x, double y, double height, unsigned effects, bool settling, bool slippery,
