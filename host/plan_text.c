@@ -191,7 +191,9 @@ static void print_end(const plan_stage *s)
     if (!isnan(s->steps))
         printf(": %.4g steps%s", s->steps, rest ? " at most" : "");
     printf("\n");
-    if (stage->repeat_from)
+    if (stage->repeat_from && isnan(stage->repeat_change))
+        printf("    then again from `%s`: %lld rounds\n", stage->repeat_from, (long long)stage->repeat_rounds);
+    else if (stage->repeat_from)
         printf("    then again from `%s`, until temperatures change by less than %.3g of their range from round to round; %lld rounds at most\n",
                stage->repeat_from, stage->repeat_change, (long long)stage->repeat_rounds);
 }

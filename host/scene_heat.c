@@ -143,6 +143,10 @@ static status check_repeat(reader *r, int t)
         if (changes_motion(&s->stage[k]))
             return document_fail(r->document, document_at(r->document, "stages[%d].change", k), r->why,
                                  "stages that are repeated may change motions and servos in the first of them alone, `%s`", stage->repeat_from);
+    if (isnan(stage->repeat_change) && stage->repeat_rounds < 0)
+        stage->repeat_change = 1e-3;
+    if (stage->repeat_rounds < 0)
+        stage->repeat_rounds = 100;
     stage->repeat_index = from;
     return STATUS_OK;
 }

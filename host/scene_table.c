@@ -380,10 +380,10 @@ const section stage_heat_section = {.name = "heat of a stage", .doc = "How heat 
 
 static const parameter stage_repeat_rows[] = {
     {.key = "from", .type = PARAMETER_NAME, .required = true, AT(scene_stage, repeat_from), .doc = "the earlier stage to go back to"},
-    {.key = "until_change", .type = PARAMETER_NUMBER, .low = 1e-12, .high = 1.0, .fallback = "1e-3", AT(scene_stage, repeat_change),
+    {.key = "until_change", .type = PARAMETER_NUMBER, .low = 1e-12, .high = 1.0, AT(scene_stage, repeat_change), .shown = "none where `rounds` is given, else 1e-3",
      .doc = "the rounds end when no temperature has changed by more than this share of the range of temperatures between the ends of two rounds"},
-    {.key = "rounds", .type = PARAMETER_INTEGER, .low = 1, .high = 1000000, .fallback = "100", AT(scene_stage, repeat_rounds),
-     .doc = "largest number of rounds"},
+    {.key = "rounds", .type = PARAMETER_INTEGER, .low = 1, .high = 1000000, .absent = -1, AT(scene_stage, repeat_rounds), .shown = "100",
+     .doc = "number of rounds; with `until_change` the largest"},
     {0},
 };
 const section stage_repeat_section = {.name = "repetition of stages", .doc = "Rounds of stages: heat while nothing moves and motion with the moduli and radii that it leaves, say.",

@@ -42,8 +42,8 @@ status rounds_end(stage_rounds *rounds, simulation *sim, bool *again, char *text
     double allowed = stage->repeat_change * rounds->range;
     rounds->round++;
     *again = !(change <= allowed) && rounds->round < stage->repeat_rounds;
-    if (!isfinite(change))
-        snprintf(text, size, "stage %s: end of round 1", stage->name);
+    if (isnan(allowed) || !isfinite(change))
+        snprintf(text, size, "stage %s: end of round %lld", stage->name, (long long)rounds->round);
     else if (change <= allowed || *again)
         snprintf(text, size, "stage %s: end of round %lld: temperatures have changed by at most %.3g K, %.3g of their range; asked for %.3g", stage->name,
                  (long long)rounds->round, change, rounds->range > 0.0 ? change / rounds->range : 0.0, stage->repeat_change);
