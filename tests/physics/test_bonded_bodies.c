@@ -111,6 +111,29 @@ static void test_strengths(void **state)
     assert_true(torsion > 1.5 * across);
 }
 
+/* Torsion alone: a grain spins at w about its bond to a held one and swings on the bond's twist, k = G J/L, with j = 2/5 m r^2. The shear stress
+ * k theta b/J is largest where it turns back, at theta = w/omega. */
+static void test_strength_in_torsion(void **state)
+{
+    (void)state;
+    double polar = 2.0 * inertia(), k = shear * polar / (2.0 * radius), omega = sqrt(k / (0.4 * sphere_mass(density, radius) * radius * radius));
+    const double theta = 0.01, stress = k * theta * radius / polar, share[] = {0.99, 1.01};
+    for (int n = 0; n < 2; n++) {
+        char more[64];
+        snprintf(more, sizeof more, ", bond_shear_strength_pa: %.17g", share[n] * stress);
+        text t = head("criterion: always", 0.0, 0.0, more);
+        put(&t, "particles:\n  - {name: held, material: m, generator: list, motion: fixed, items: [{radius_m: %g, position_m: [0, 0, 0]}]}\n", radius);
+        put(&t, "  - {name: free, material: m, generator: list, items: [{radius_m: %g, position_m: [%.17g, 0, 0], spin_rad_s: [%.17g, 0, 0]}]}\n", radius,
+            2.0 * radius, theta * omega);
+        physics_case c = case_open(&t);
+        case_run(&c, 700, 5e-3 / omega); /* past both turns */
+        assert_int_equal(alive(&c), n);
+        if (n == 1) /* there and back: cos(3.5) of the spin */
+            NEAR(case_get(&c, "spin", 1, 0), cos(3.5) * theta * omega, 1e-2 * theta * omega);
+        case_close(&c);
+    }
+}
+
 /* ---- bonds hold at any distance ---- */
 
 static text soft(double skin, const char *rest)
@@ -296,7 +319,7 @@ static void test_tumbling(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cantilever), cmocka_unit_test(test_strengths), cmocka_unit_test(test_no_table_loses_a_bond),
+        cmocka_unit_test(test_cantilever), cmocka_unit_test(test_strengths), cmocka_unit_test(test_strength_in_torsion), cmocka_unit_test(test_no_table_loses_a_bond),
         cmocka_unit_test(test_wall),       cmocka_unit_test(test_neck_melts_and_sets), cmocka_unit_test(test_tumbling),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
