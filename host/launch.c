@@ -131,13 +131,13 @@ status launch_bind(simulation *sim, const char *kernel, int first, failure *why)
 }
 
 /* The particle stage finds forces where chunks share places for them. */
-static status bind_placed_slots(simulation *sim, cl_kernel particle, failure *why)
+status launch_bind_placed_slots(simulation *sim, const char *kernel, int first, failure *why)
 {
-    const char *names[64];
-    int count = launch_argument_names(&sim->live, "particle_stage", names, 64);
-    for (int a = 0; a < count; a++)
+    const char *names[LAUNCH_NAMES_MAX];
+    int count = launch_argument_names(&sim->live, kernel, names, LAUNCH_NAMES_MAX);
+    for (int a = 0; a < count && sim->plan.force_records > 0; a++)
         if (strcmp(names[a], "slots") == 0)
-            TRY_CL(clSetKernelArg(particle, (cl_uint)(2 + a), sizeof sim->table.placed, &sim->table.placed), "particle_stage");
+            TRY_CL(clSetKernelArg(launch_kernel(sim, kernel), (cl_uint)(first + a), sizeof sim->table.placed, &sim->table.placed), kernel);
     return STATUS_OK;
 }
 
@@ -147,8 +147,7 @@ status launch_bind_stages(simulation *sim, failure *why)
     cl_kernel pair = launch_kernel(sim, "pair_stage"), particle = launch_kernel(sim, "particle_stage");
     TRY(launch_bind(sim, "pair_stage", 2, why));
     TRY(launch_bind(sim, "particle_stage", 2, why));
-    if (sim->plan.force_records > 0)
-        TRY(bind_placed_slots(sim, particle, why));
+    TRY(launch_bind_placed_slots(sim, "particle_stage", 2, why));
     TRY_CL(clSetKernelArg(pair, 1, sizeof sim->control, &sim->control), "pair_stage");
     TRY_CL(clSetKernelArg(particle, 1, sizeof sim->control, &sim->control), "particle_stage");
     const char *const others[] = {"pair_probe", "observe_records", "limit_records"};

@@ -260,8 +260,8 @@ typedef struct output_spec {
     double checkpoint_every_s;   /* NAN: none but at an interrupt or a guard */
 } output_spec;
 
-/* Two launches a step, or a loop over steps in one work-group. */
-typedef enum step_form { STEP_AUTO, STEP_TWO_KERNELS, STEP_ONE_GROUP } step_form;
+/* See step_loop.c. */
+typedef enum step_form { STEP_AUTO, STEP_TWO_KERNELS, STEP_ONE_GROUP, STEP_PHASES, STEP_TEAM } step_form;
 
 /* A work-item of the two stages takes one record or grain, or a block of them. */
 typedef enum kernel_form { KERNEL_AUTO, KERNEL_ITEMS, KERNEL_BLOCKS } kernel_form;

@@ -434,8 +434,9 @@ static const parameter table_rows[] = {
     {.key = "batch_steps", .type = PARAMETER_INTEGER, .low = 1, .high = 1e9, .word = "auto",
      .fallback = "auto", AT(table_spec, batch_steps),
      .doc = "steps enqueued before the host looks"},
-    {.key = "step_form", .type = PARAMETER_CHOICE, .choices = "auto|two_kernels|one_group", .fallback = "auto", AT(table_spec, step_form),
-     .doc = "two kernels a step, or one work-group that loops over steps, for small beds; `auto` goes by size"},
+    {.key = "step_form", .type = PARAMETER_CHOICE, .choices = "auto|two_kernels|one_group|phases|team", .fallback = "auto", AT(table_spec, step_form),
+     .doc = "a launch for each stage and chunk; or many steps in one launch by one work-group, or by a team of one for every core, or a launch for each"
+            " phase of such a team's step; `auto` takes what is fastest at the moment, and results are the same"},
     {.key = "kernel_form", .type = PARAMETER_CHOICE, .choices = "auto|items|blocks", .fallback = "auto", AT(table_spec, kernel_form),
      .doc = "a work-item takes one contact or grain, as GPUs want it, or a block of them, as CPUs do; `auto` goes by the device, and results are"
             " the same"},

@@ -261,10 +261,11 @@ void simulation_free(simulation *sim)
     heat_free(sim);
     frozen_free(sim);
     step_plan_free(&sim->plan);
+    step_loop_free(sim);
     for (int f = 0; f < sim->field_count; f++)
         store_release(sim, &sim->field[f].mem, 0);
     cl_mem *const rest[] = {&sim->where, &sim->partial, &sim->control, &sim->faces, &sim->movers, &sim->constants, &sim->built_position, &sim->scratch4,
-                            &sim->velocity_now, &sim->spin_now, &sim->launches};
+                            &sim->velocity_now, &sim->spin_now};
     for (size_t m = 0; m < sizeof rest / sizeof *rest; m++)
         store_release(sim, rest[m], 0);
     free(sim->wall_body);
@@ -273,7 +274,6 @@ void simulation_free(simulation *sim)
     free(sim->group_of_id);
     free(sim->face_rows);
     free(sim->mover_rows);
-    free(sim->launch_rows);
     free(sim->kernels_directory);
     free(sim);
 }
@@ -540,6 +540,7 @@ status simulation_enter_stage(simulation *sim, int stage, failure *why)
     if (!same) {
         launch_close(sim);
         TRY(launch_open(sim, why));
+        sim->loop.batches = 0;
     }
     TRY(forget_histories(sim, why));
     TRY(servo_enter(sim, why));
@@ -752,11 +753,13 @@ static status run_batch(simulation *sim, int steps, int *done, bool *rebuild, fa
     TRY(beams_before_batch(sim, why));
     if (sim->walls_move || sim->groups_move || sim->heat.vary)
         TRY(write_rows(sim, steps, why));
+    double start = seconds();
     TRY(store_write(sim, sim->control, 0, sizeof control, &control, why));
     TRY(enqueue_batch(sim, steps, why));
     TRY(store_read(sim, sim->control, 0, sizeof control, &control, why));
     TRY(servo_end(sim, why));
     *done = control.halt_step < steps ? control.halt_step : steps;
+    step_loop_note(sim, *done, seconds() - start);
     sim->bonding_done = sim->bonding_done || (bonding >= 0 && bonding < *done);
     *rebuild = control.reason != 0;
     for (int s = 0; s < *done; s++)

@@ -62,20 +62,29 @@ typedef struct heat_limit {
     double stiffness; /* in which the stiffness of a contact changes by a factor of e */
 } heat_limit;
 
-/* One launch of a step: work-groups of the pair stage or of the particle stage. */
-typedef struct step_piece {
-    bool pairs;
-    int first, count; /* work-groups */
-    int force_shift;
-} step_piece;
-
-/* The launches of a step, see step_plan.c. */
+/* The pieces of a step, in order; see step_plan.c. */
 typedef struct step_plan {
-    step_piece *piece;
+    clast_piece *piece;
     int count, capacity;
+    clast_phases phases;
     int chunk_records; /* 0: the stages go whole */
     int force_records; /* places for forces of pairs; 0: every record has its own */
 } step_plan;
+
+/* Who goes through the phases of the steps of a batch, see step_loop.c. */
+typedef enum loop_manner { LOOP_PHASES, LOOP_TEAM, LOOP_ALONE, LOOP_MANNERS } loop_manner;
+
+/* What many steps in one launch need, see step_loop.c; nothing while they are not used. */
+typedef struct step_loop {
+    cl_mem launches, team, phases, pieces; /* of the steps of a batch; of the plan */
+    clast_launch *rows;
+    int rows_held, pieces_held;
+    loop_manner manner;            /* of the batch under way */
+    int64_t batches;               /* so far, with this program */
+    double pace[LOOP_MANNERS];     /* s a step of late; 0: not known */
+    int64_t due[LOOP_MANNERS];     /* batch in which it is to be tried again */
+    int64_t interval[LOOP_MANNERS];
+} step_loop;
 
 typedef struct step_limit {
     double limit_s;       /* largest stable step; infinite where nothing binds */
@@ -147,9 +156,7 @@ typedef struct simulation {
     int64_t stride;         /* grains that fields have room for: `id_count` up to a whole block; components of a grain stand together */
     bool particles_stale;   /* `where` lags behind */
     cl_mem where, partial, control, faces, movers, constants, built_position, scratch4;
-    cl_mem launches;         /* of the steps of a batch, for the one-group form; NULL while it is not used */
-    clast_launch *launch_rows;
-    int loop_capacity;
+    step_loop loop;
     cl_mem velocity_now, spin_now; /* synchronised, where velocities stand half a step behind */
     int64_t partial_capacity;
     contact_table table;
@@ -242,6 +249,8 @@ void launch_close(simulation *sim);
 int launch_argument_names(const live_laws *live, const char *kernel, const char **names, int max);
 /* Sets the fields of one of the stages that read records or grains, from argument `first` on. */
 status launch_bind(simulation *sim, const char *kernel, int first, failure *why);
+/* The same where the kernel is to find forces at the places that chunks share; nothing where they have none. */
+status launch_bind_placed_slots(simulation *sim, const char *kernel, int first, failure *why);
 status launch_bind_stages(simulation *sim, failure *why);
 cl_kernel launch_kernel(const simulation *sim, const char *name);
 clast_launch launch_values(const simulation *sim);
@@ -259,17 +268,25 @@ status launch_set_from(cl_kernel kernel, const char *name, cl_uint first, failur
 /* What the stages are told in step `s` of the batch to come; bonds are made in `bond_step` of it (-1: in none). */
 clast_launch launch_of_step(const simulation *sim, int s, int bond_step);
 
-/* step_loop.c: many steps in one work-group */
+/* step_loop.c: many steps in one launch */
 /* True where the scene's programs are to have the kernel. */
 bool step_loop_wanted(const simulation *sim);
 /* True where the batch to come takes that form. */
 bool step_loop_now(const simulation *sim);
-/* Work-items of the group. */
+/* Members of the team for the table of the moment; 1: none. */
+int step_loop_members(const simulation *sim);
+/* Work-items of a work-group. */
 int step_loop_items(const simulation *sim);
+/* After every table. */
 status step_loop_bind(simulation *sim, failure *why);
 status step_loop_enqueue(simulation *sim, int steps, failure *why);
+/* After a batch of so many steps, which took so long. */
+void step_loop_note(simulation *sim, int steps, double seconds);
+void step_loop_free(simulation *sim);
 
 /* step_plan.c */
+/* Work-items that take a block of grains through the particle stage, where stages go by blocks (PARTICLE_LANES in kernels/stage/by_blocks.cl). */
+#define STEP_BLOCK_ITEMS 2
 /* After every table. */
 status step_plan_make(simulation *sim, failure *why);
 void step_plan_free(step_plan *plan);

@@ -1,10 +1,13 @@
-/* The launches of a step, in order.
+/* The pieces of a step, in order.
  *
  * On a GPU, and for a bed that fits the caches, two: all records, all grains. On a CPU both stages would otherwise wait for memory: the
  * forces of all records go out to it and come back. So the records are taken in chunks, and as soon as all records that a group of blocks takes
  * part in have been through the pair stage, these blocks go through the particle stage, while their forces are still in the cache. No record
  * that comes later reads these grains, so that they can move in place, and every sum is the same to the bit. A chunk whose forces have all been
- * gathered leaves its place to a later chunk of the same step, so that forces hardly leave the cache at all. */
+ * gathered leaves its place to a later chunk of the same step, so that forces hardly leave the cache at all.
+ *
+ * Where several work-groups go through the steps (step_loop.c) each has chunks of its own, a stream: a part of the bed, whose grains and forces stay
+ * in the caches of its core. Only blocks that take part in records of two streams wait until all streams have ended. */
 #include "laws/fields.h"
 #include "simulation.h"
 
@@ -15,17 +18,22 @@
 #define CHUNKS_LEAST 4
 /* Records of a chunk for each block in a group: 16 blocks go together in the usual chunk, so that ragged borders make no small launches. */
 #define CHUNK_PER_BLOCK 2048
+/* A chunk of a stream in chunks that are launched. */
+#define STREAM_CHUNK_SHARE 4
 
 /* What a plan is made from; arrays of the host. */
 typedef struct planning {
     int chunk, chunks;  /* records in one, and how many */
+    int streams;
     int blocks, together, groups;
-    int32_t *last;      /* of every block: its last record of a pair; then the chunk after which it may go */
+    int32_t *first;     /* of every block: its first record of a pair */
+    int32_t *last;      /* of every block: its last record of a pair; then the chunk after which it may go, `chunks`: after all streams */
     int32_t *release;   /* of every work-group of records: the chunk after which its forces have been gathered; then the same of every chunk */
     int32_t *place;     /* of every chunk, in chunks */
     int places;
 } planning;
 
+/* Records that a chunk is to have; 0: the stages go whole. */
 static int chunk_records(const simulation *sim)
 {
     int64_t asked = sim->scene->table.chunk_records, size = sim->block;
@@ -48,14 +56,28 @@ static status add_piece(step_plan *plan, bool pairs, int first, int count, int s
         return STATUS_OK;
     if (plan->count == plan->capacity) {
         int capacity = 2 * plan->capacity + 16;
-        step_piece *more = realloc(plan->piece, (size_t)capacity * sizeof *more);
+        clast_piece *more = realloc(plan->piece, (size_t)capacity * sizeof *more);
         if (!more)
             return fail(why, STATUS_ERROR, "out of memory");
         plan->piece = more;
         plan->capacity = capacity;
     }
-    plan->piece[plan->count++] = (step_piece){pairs, first, count, shift};
+    plan->piece[plan->count++] = (clast_piece){pairs ? 1 : 0, first, count, shift};
     return STATUS_OK;
+}
+
+/* First chunk of a stream. */
+static int stream_begin(const planning *p, int stream)
+{
+    return (int)((int64_t)p->chunks * stream / p->streams);
+}
+
+static int stream_of(const planning *p, int chunk)
+{
+    int stream = 0;
+    while (stream + 1 < p->streams && stream_begin(p, stream + 1) <= chunk)
+        stream++;
+    return stream;
 }
 
 static int blocks_of(const simulation *sim)
@@ -63,12 +85,26 @@ static int blocks_of(const simulation *sim)
     return (int)((sim->count + sim->block - 1) / sim->block);
 }
 
+/* The pieces from `first` on, which work-groups share. */
+static void add_shared_phase(step_plan *plan, int first)
+{
+    clast_phase phase = {.first = first, .end = plan->count};
+    for (int p = first; p < plan->count; p++)
+        phase.units += plan->piece[p].count * (plan->piece[p].pairs ? 1 : STEP_BLOCK_ITEMS);
+    if (phase.units > 0)
+        plan->phases.phase[plan->phases.count++] = phase;
+}
+
 static status plan_whole(simulation *sim, failure *why)
 {
     step_plan *plan = &sim->plan;
     plan->chunk_records = plan->force_records = 0;
     TRY(add_piece(plan, true, 0, sim->table.record_count / sim->block, 0, why));
-    return add_piece(plan, false, 0, blocks_of(sim), 0, why);
+    add_shared_phase(plan, 0);
+    int grains = plan->count;
+    TRY(add_piece(plan, false, 0, blocks_of(sim), 0, why));
+    add_shared_phase(plan, grains);
+    return STATUS_OK;
 }
 
 /* ---- after which chunk a block may go, and until when a chunk's forces are needed ---- */
@@ -77,20 +113,24 @@ static status find_last_records(simulation *sim, planning *p, failure *why)
 {
     contact_table *t = &sim->table;
     cl_kernel kernel = launch_kernel(sim, "table_last_records");
-    TRY(launch_set(kernel, "table_last_records", why, "mmmii", t->slot_offset[t->now], t->slots[t->now], t->work[0], t->wall_base, p->blocks));
+    TRY(launch_set(kernel, "table_last_records", why, "mmmmii", t->slot_offset[t->now], t->slots[t->now], t->work[0], t->work[1], t->wall_base, p->blocks));
     TRY(launch_run(sim, kernel, "table_last_records", p->blocks, sim->block, why));
-    return store_read(sim, t->work[0], 0, 4 * (uint64_t)p->blocks, p->last, why);
+    TRY(store_read(sim, t->work[0], 0, 4 * (uint64_t)p->blocks, p->first, why));
+    return store_read(sim, t->work[1], 0, 4 * (uint64_t)p->blocks, p->last, why);
 }
 
-/* A group goes with its latest block. */
+/* A group goes with its latest block, and after all streams where it takes part in two. */
 static void wait_in_groups(planning *p)
 {
     for (int g = 0; g < p->groups; g++) {
-        int first = g * p->together, end = smaller(first + p->together, p->blocks), last = 0;
-        for (int b = first; b < end; b++)
+        int begin = g * p->together, end = smaller(begin + p->together, p->blocks), first = p->first[begin], last = 0;
+        for (int b = begin; b < end; b++) {
+            first = smaller(first, p->first[b]);
             last = p->last[b] > last ? p->last[b] : last;
-        for (int b = first; b < end; b++)
-            p->last[b] = last / p->chunk;
+        }
+        bool within = first > last || stream_of(p, first / p->chunk) == stream_of(p, last / p->chunk);
+        for (int b = begin; b < end; b++)
+            p->last[b] = within ? last / p->chunk : p->chunks;
     }
 }
 
@@ -112,19 +152,22 @@ static status find_releases(simulation *sim, planning *p, failure *why)
     return STATUS_OK;
 }
 
-/* Every chunk takes the lowest place that no earlier chunk needs any more. */
+/* Every chunk takes the lowest place of its stream that no earlier chunk of it needs any more. */
 static void choose_places(planning *p)
 {
     p->places = 0;
-    for (int c = 0; c < p->chunks; c++) {
-        int place = 0;
-        for (int e = 0; e < c; e++)
-            if (p->release[e] >= c && p->place[e] == place) {
-                place++;
-                e = -1;
-            }
-        p->place[c] = place;
-        p->places = place + 1 > p->places ? place + 1 : p->places;
+    for (int stream = 0; stream < p->streams; stream++) {
+        int begin = stream_begin(p, stream), base = p->places;
+        for (int c = begin; c < stream_begin(p, stream + 1); c++) {
+            int place = base;
+            for (int e = begin; e < c; e++)
+                if (p->release[e] >= c && p->place[e] == place) {
+                    place++;
+                    e = begin - 1;
+                }
+            p->place[c] = place;
+            p->places = place + 1 > p->places ? place + 1 : p->places;
+        }
     }
 }
 
@@ -145,13 +188,21 @@ static status add_blocks(step_plan *plan, const planning *p, int chunk, failure 
 static status add_pieces(simulation *sim, const planning *p, int wall_shift, failure *why)
 {
     step_plan *plan = &sim->plan;
+    clast_phases *phases = &plan->phases;
     int wall_group = sim->table.wall_base / sim->block, end = sim->table.record_count / sim->block, per_chunk = p->chunk / sim->block;
     TRY(add_piece(plan, true, wall_group, end - wall_group, wall_shift, why));
+    add_shared_phase(plan, 0);
     for (int c = 0; c < p->chunks; c++) {
-        int first = c * per_chunk, shift = plan->force_records > 0 ? (c - p->place[c]) * p->chunk : 0;
+        int first = c * per_chunk, shift = plan->force_records > 0 ? (c - p->place[c]) * p->chunk : 0, stream = stream_of(p, c);
+        if (c == stream_begin(p, stream))
+            phases->stream[stream] = plan->count;
         TRY(add_piece(plan, true, first, smaller(per_chunk, wall_group - first), shift, why));
         TRY(add_blocks(plan, p, c, why));
     }
+    phases->stream[p->streams] = plan->count;
+    phases->phase[phases->count++] = (clast_phase){.streams = 1, .end = p->streams, .units = p->streams};
+    TRY(add_blocks(plan, p, p->chunks, why));
+    add_shared_phase(plan, phases->stream[p->streams]);
     return STATUS_OK;
 }
 
@@ -188,31 +239,51 @@ static status place_slots(simulation *sim, const planning *p, int wall_shift, fa
 static status plan_chunks(simulation *sim, planning *p, failure *why)
 {
     step_plan *plan = &sim->plan;
+    bool may_share = may_share_places(sim) && p->chunks >= 2 * p->streams;
     TRY(find_last_records(sim, p, why));
     wait_in_groups(p);
-    TRY(find_releases(sim, p, why));
-    choose_places(p);
+    if (may_share) {
+        TRY(find_releases(sim, p, why));
+        choose_places(p);
+    }
     int room = p->places * p->chunk, wall_base = sim->table.wall_base;
-    bool pays = may_share_places(sim) && 2 * (int64_t)p->places * p->chunk <= wall_base;
+    bool pays = may_share && 2 * (int64_t)room <= wall_base;
     plan->chunk_records = p->chunk;
     plan->force_records = pays ? room : 0;
     TRY(add_pieces(sim, p, pays ? wall_base - room : 0, why));
     return pays ? place_slots(sim, p, wall_base - room, why) : STATUS_OK;
 }
 
+/* Several work-groups have a stream each; beds that fit the caches go in one chunk a stream. A chunk of a stream costs no launch, and may be smaller. */
+static void choose_chunks(const simulation *sim, planning *p)
+{
+    int whole = sim->table.wall_base, members = step_loop_members(sim);
+    p->chunk = chunk_records(sim);
+    if (members > 1 && p->chunk > 0 && sim->scene->table.chunk_records == 0)
+        p->chunk = p->chunk / STREAM_CHUNK_SHARE > sim->block ? p->chunk / STREAM_CHUNK_SHARE : sim->block;
+    if (members > 1 && p->chunk == 0 && whole >= members * sim->block)
+        p->chunk = (whole + members - 1) / members + sim->block - 1;
+    p->chunk -= p->chunk % sim->block;
+    p->chunks = p->chunk > 0 ? (whole + p->chunk - 1) / p->chunk : 0;
+    p->streams = members < p->chunks ? members : p->chunks;
+}
+
 status step_plan_make(simulation *sim, failure *why)
 {
-    planning p = {.chunk = chunk_records(sim), .blocks = blocks_of(sim)};
+    planning p = {.blocks = blocks_of(sim)};
     sim->plan.count = 0;
+    sim->plan.phases.count = 0;
+    choose_chunks(sim, &p);
     if (p.chunk == 0)
         return plan_whole(sim, why);
-    p.chunks = (sim->table.wall_base + p.chunk - 1) / p.chunk;
-    p.together = p.chunk / CHUNK_PER_BLOCK > 1 ? p.chunk / CHUNK_PER_BLOCK : 1;
+    p.together = p.chunk / CHUNK_PER_BLOCK > 1 && p.streams == 1 ? p.chunk / CHUNK_PER_BLOCK : 1;
     p.groups = (p.blocks + p.together - 1) / p.together;
+    p.first = calloc((size_t)p.blocks + 1, sizeof *p.first);
     p.last = calloc((size_t)p.blocks + 1, sizeof *p.last);
     p.release = calloc((size_t)sim->table.wall_base / sim->block + 1, sizeof *p.release);
     p.place = calloc((size_t)p.chunks, sizeof *p.place);
-    status result = p.last && p.release && p.place ? plan_chunks(sim, &p, why) : fail(why, STATUS_ERROR, "out of memory");
+    status result = p.first && p.last && p.release && p.place ? plan_chunks(sim, &p, why) : fail(why, STATUS_ERROR, "out of memory");
+    free(p.first);
     free(p.last);
     free(p.release);
     free(p.place);
@@ -227,11 +298,11 @@ void step_plan_free(step_plan *plan)
 
 /* ---- a step ---- */
 
-static status enqueue_piece(const simulation *sim, cl_command_queue queue, const step_piece *piece, clast_launch *launch, cl_event *event, failure *why)
+static status enqueue_piece(const simulation *sim, cl_command_queue queue, const clast_piece *piece, clast_launch *launch, cl_event *event, failure *why)
 {
     const char *name = piece->pairs ? "pair_stage" : "particle_stage";
     cl_kernel kernel = launch_kernel(sim, name);
-    size_t local = sim->live.blocks ? 1 : sim->block, share = sim->live.blocks ? (piece->pairs ? 1 : 2) : sim->block;
+    size_t local = sim->live.blocks ? 1 : sim->block, share = sim->live.blocks ? (piece->pairs ? 1 : STEP_BLOCK_ITEMS) : sim->block;
     size_t items = (size_t)piece->count * share;
     cl_event watched;
     bool watch = sim->watch && !event;

@@ -238,10 +238,11 @@ static status count_records(simulation *sim, const clast_launch *launch, failure
     contact_table *t = &sim->table;
     cl_mem position = store_find(sim, "position")->mem, radius = table_radii(sim), id = store_find(sim, "id")->mem;
     cl_kernel count = launch_kernel(sim, "table_count"), walls = launch_kernel(sim, "table_count_walls");
+    TRY(store_fill(sim, t->work[WORK_A], 4 * (uint64_t)sim->stride, why));
     TRY(store_fill(sim, t->work[WORK_B], 4 * (uint64_t)sim->stride, why));
     TRY(launch_set(count, "table_count", why, "Lmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_A], t->work[WORK_B],
                    store_find(sim, "force")->mem, kept_partners(sim)));
-    TRY(launch_run(sim, count, "table_count", sim->stride, sim->block, why));
+    TRY(launch_run(sim, count, "table_count", sim->count, sim->block, why));
     TRY(bonds_keep(sim, launch, kept_partners(sim), false, why));
     TRY(scan(sim, t->work[WORK_A], t->work[WORK_D], sim->stride, why));
     t->wall_record_count = 0;

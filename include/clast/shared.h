@@ -63,6 +63,43 @@ typedef struct clast_control {
     clast_i32 spare[2];
 } clast_control;
 
+/* A part of a step: blocks of records through the pair stage, or blocks of grains through the particle stage. */
+typedef struct clast_piece {
+    clast_i32 pairs; /* 1: records */
+    clast_i32 first, count;
+    clast_i32 force_shift;
+} clast_piece;
+
+#define CLAST_TEAM_MAX 64  /* members */
+#define CLAST_PHASES_MAX 3
+
+/* What a team does between two meetings: pieces that it shares, or streams, each of them some pieces one after the other by one member. */
+typedef struct clast_phase {
+    clast_i32 streams; /* 0: shared pieces */
+    clast_i32 first, end; /* pieces, or streams */
+    clast_i32 units;   /* what members take: work-items of the two stages, or streams */
+} clast_phase;
+
+#define CLAST_TEAM_APART 32 /* words between what different members write all the time: two cache lines */
+
+typedef struct clast_phases {
+    clast_i32 count;
+    clast_phase phase[CLAST_PHASES_MAX];
+    clast_i32 stream[CLAST_TEAM_MAX + 1]; /* first piece of every stream; behind the last, where it ends */
+} clast_phases;
+
+/* Work-groups that go through many steps together (kernels/stage/by_blocks.cl). All zero before each launch. */
+typedef struct clast_team {
+    clast_i32 arrived; /* work-groups that have begun */
+    clast_i32 closed;  /* 1: all steps are done */
+    clast_i32 room[CLAST_TEAM_APART - 2];
+    clast_i32 waiting; /* members that have come to the next meeting */
+    clast_i32 room2[CLAST_TEAM_APART - 1];
+    clast_i32 state;   /* meetings held, and members */
+    clast_i32 room3[CLAST_TEAM_APART - 1];
+    clast_i32 taken[CLAST_TEAM_MAX * CLAST_TEAM_APART]; /* of each member's part of a piece, what has been begun */
+} clast_team;
+
 #define CLAST_HALT_TRAVEL 1
 #define CLAST_HALT_LEFT 2
 

@@ -134,10 +134,10 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
         pair_of_rows(launch, owners, others, lane, k + lane PAIR_PASS);
 }
 
-INLINE void pair_sweep(const clast_launch *launch, int me, int items, int records PAIR_DECLARE)
+INLINE void pair_wall_block(const clast_launch *launch, int group PAIR_DECLARE)
 {
-    for (int group = me; group < records / CLAST_BLOCK; group += items)
-        pair_block(launch, group PAIR_PASS);
+    for (int lane = 0; lane < CLAST_BLOCK; lane++)
+        pair_of_wall(launch, CLAST_BLOCK * group + lane PAIR_PASS);
 }
 
 __kernel void pair_stage(const clast_launch launch, __global const clast_control *restrict control PAIR_DECLARE)
@@ -148,8 +148,7 @@ __kernel void pair_stage(const clast_launch launch, __global const clast_control
     if (group < launch.first_wall_group)
         pair_block(&launch, group PAIR_PASS);
     else
-        for (int lane = 0; lane < CLAST_BLOCK; lane++)
-            pair_of_wall(&launch, CLAST_BLOCK * group + lane PAIR_PASS);
+        pair_wall_block(&launch, group PAIR_PASS);
 }
 
 /* ---- grains ---- */
@@ -212,15 +211,142 @@ INLINE void particle_block(const clast_launch *launch, __global clast_control *c
         particle_halt(launch, control);
 }
 
-INLINE void particle_sweep(const clast_launch *launch, __global clast_control *control, int me, int items, int grains PARTICLE_DECLARE)
-{
-    for (int first = me * PARTICLE_LANES; first < grains; first += items * PARTICLE_LANES)
-        particle_block(launch, control, first PARTICLE_PASS);
-}
-
 __kernel void particle_stage(const clast_launch launch, __global clast_control *restrict control PARTICLE_DECLARE)
 {
     if (control->halt_step <= launch.step)
         return;
     particle_block(&launch, control, CLAST_BLOCK * launch.first_group + PARTICLE_LANES * (int)get_global_id(0) PARTICLE_PASS);
+}
+
+/* ---- a team ---- */
+
+/* A member of the work-groups that go through steps together; `meetings`: those held so far, which tells the step and the piece. */
+typedef struct team_member {
+    int place, size, meetings;
+    int taken; /* units of its own part, where nobody else takes any; -1 in a team */
+} team_member;
+
+/* What another thread writes; volatile, so that it is read each time. An atomic operation must follow before what it guards is read. */
+#define TEAM_LOOK(word) (*(volatile __global int *)&(word))
+/* Meetings held and members, in one word. */
+#define TEAM_STATE(meetings, size) ((meetings) * (2 * CLAST_TEAM_MAX) + (size))
+
+INLINE void team_read(team_member *me, int state)
+{
+    me->size = state % (2 * CLAST_TEAM_MAX);
+    me->meetings = state / (2 * CLAST_TEAM_MAX);
+}
+
+/* Nobody may wait for a work-group that has not begun, since it may never begin before this one ends. So the first to come begins alone, and
+ * others are taken in at the next meeting after they have come. False: this work-group is not in it, and has nothing to do. */
+INLINE bool team_join(__global clast_team *team, int most, int only, team_member *me)
+{
+    me->taken = only < 0 ? -1 : 0;
+    if (only >= 0) {
+        me->place = (int)get_group_id(0);
+        me->size = (int)get_num_groups(0);
+        me->meetings = only;
+        return true;
+    }
+    me->place = atomic_inc(&team->arrived);
+    if (me->place >= most)
+        return false;
+    if (me->place == 0)
+        atomic_xchg(&team->state, TEAM_STATE(0, 1));
+    int state = TEAM_LOOK(team->state);
+    while (state % (2 * CLAST_TEAM_MAX) <= me->place) {
+        if (TEAM_LOOK(team->closed))
+            return false;
+        state = TEAM_LOOK(team->state);
+    }
+    team_read(me, atomic_or(&team->state, 0));
+    return true;
+}
+
+/* All members have come here before any goes on; the last one puts the counts back, and takes in who has come since. */
+INLINE void team_meet(__global clast_team *team, int most, team_member *me)
+{
+    if (me->taken >= 0) {
+        me->meetings++;
+        return;
+    }
+    if (atomic_inc(&team->waiting) == me->size - 1) {
+        int size = min(TEAM_LOOK(team->arrived), most);
+        for (int m = 0; m < size; m++)
+            team->taken[m * CLAST_TEAM_APART] = 0;
+        team->waiting = 0;
+        atomic_xchg(&team->state, TEAM_STATE(me->meetings + 1, size));
+    } else
+        while (TEAM_LOOK(team->state) / (2 * CLAST_TEAM_MAX) == me->meetings)
+            ;
+    team_read(me, atomic_or(&team->state, 0));
+}
+
+INLINE void team_leave(__global clast_team *team)
+{
+    atomic_xchg(&team->closed, 1);
+}
+
+/* The next of `count` units for this member, in its own part (`of` is its own place at first) or in that of one who has not begun with it; -1: none
+ * is left. */
+INLINE int team_next(__global clast_team *team, team_member *me, int *of, int count)
+{
+    if (me->taken >= 0) {
+        int first = (int)((long)count * me->place / me->size), at = first + me->taken++;
+        return at < (int)((long)count * (me->place + 1) / me->size) ? at : -1;
+    }
+    for (int tried = 0; tried < me->size; tried++) {
+        int first = (int)((long)count * *of / me->size), end = (int)((long)count * (*of + 1) / me->size);
+        int at = first + atomic_inc(&team->taken[*of * CLAST_TEAM_APART]);
+        if (at < end)
+            return at;
+        *of = *of + 1 < me->size ? *of + 1 : 0;
+    }
+    return -1;
+}
+
+/* Units of a piece: a work-item's of the two stages. */
+#define PIECE_UNITS(piece) ((piece).count * ((piece).pairs ? 1 : CLAST_BLOCK / PARTICLE_LANES))
+
+/* Units from..to of pieces first..end, as a member takes them. */
+typedef struct team_share {
+    int first, end, from, to;
+} team_share;
+
+/* Of a unit that members share the piece and its place there; of a stream all its pieces whole. */
+INLINE team_share team_share_of(__global const clast_phases *phases, __global const clast_piece *pieces, int phase, int unit)
+{
+    team_share share;
+    if (phases->phase[phase].streams) {
+        share.first = phases->stream[unit];
+        share.end = phases->stream[unit + 1];
+        share.from = 0;
+        share.to = INT_MAX;
+        return share;
+    }
+    int p = phases->phase[phase].first;
+    for (; unit >= PIECE_UNITS(pieces[p]); p++)
+        unit -= PIECE_UNITS(pieces[p]);
+    share.first = p;
+    share.end = p + 1;
+    share.from = unit;
+    share.to = unit + 1;
+    return share;
+}
+
+INLINE void team_pairs(const team_member *me, const clast_launch *launch, const clast_launch *for_walls, int from, int to PAIR_DECLARE)
+{
+    (void)me;
+    for (int group = launch->first_group + from; group < launch->first_group + to; group++)
+        if (group < launch->first_wall_group)
+            pair_block(launch, group PAIR_PASS);
+        else
+            pair_wall_block(for_walls, group PAIR_PASS);
+}
+
+INLINE void team_grains(const team_member *me, const clast_launch *launch, __global clast_control *control, int from, int to PARTICLE_DECLARE)
+{
+    (void)me;
+    for (int unit = from; unit < to; unit++)
+        particle_block(launch, control, CLAST_BLOCK * launch->first_group + PARTICLE_LANES * unit PARTICLE_PASS);
 }

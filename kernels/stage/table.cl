@@ -20,13 +20,26 @@ INLINE int table_level(__global const clast_grid *grid, real r)
     return level;
 }
 
+/* The place of a grain among the cells of a level. */
+typedef struct table_spot {
+    int x, y, z;
+} table_spot;
+
+INLINE table_spot table_spot_of(__global const clast_grid *grid, int level, vec3 x)
+{
+    __global const clast_level *v = grid->level + level;
+    table_spot spot;
+    spot.x = table_wrap((x.x - number(grid->origin[0])) * number(v->inverse_size[0]), v->cells[0]);
+    spot.y = table_wrap((x.y - number(grid->origin[1])) * number(v->inverse_size[1]), v->cells[1]);
+    spot.z = table_wrap((x.z - number(grid->origin[2])) * number(v->inverse_size[2]), v->cells[2]);
+    return spot;
+}
+
 INLINE int table_cell(__global const clast_grid *grid, int level, vec3 x)
 {
-    __global const clast_level *l = grid->level + level;
-    int cx = table_wrap((x.x - number(grid->origin[0])) * number(l->inverse_size[0]), l->cells[0]);
-    int cy = table_wrap((x.y - number(grid->origin[1])) * number(l->inverse_size[1]), l->cells[1]);
-    int cz = table_wrap((x.z - number(grid->origin[2])) * number(l->inverse_size[2]), l->cells[2]);
-    return l->first_cell + (cz * l->cells[1] + cy) * l->cells[0] + cx;
+    __global const clast_level *v = grid->level + level;
+    table_spot spot = table_spot_of(grid, level, x);
+    return v->first_cell + (spot.z * v->cells[1] + spot.y) * v->cells[0] + spot.x;
 }
 
 /* Cell and rank in it of every grain; what is outside a domain that drops its leavers goes to the last bucket. */
@@ -101,68 +114,110 @@ __kernel void table_permute_int(const clast_launch launch, __global const int *r
         to[i] = from[order[i]];
 }
 
-/* True where i owns the pair with j and the two are within reach. */
-INLINE bool table_pairs(const clast_launch *launch, real skin, int i, precise3 place, precise radius_i, int id_i, int j, __global const exact *restrict position,
-                        __global const exact *restrict radius, __global const int *restrict id)
+/* A grain as others look for it. */
+typedef struct table_grain {
+    precise3 place;
+    precise radius;
+    int id;
+} table_grain;
+
+INLINE table_grain table_grain_of(int i, __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id)
 {
-    precise radius_j = precise_load(radius[j]);
-    vec3 d = apart_vector(periodic_nearest(launch, apart_of(PRECISE_GRAIN3(position, j), place)));
-    real reach = rounded(radius_i) + rounded(radius_j) + skin;
-    bool owns = precise_less(radius_i, radius_j) || (!precise_less(radius_j, radius_i) && id[j] > id_i);
-    return j != i && owns && dot3(d, d) < reach * reach;
+    table_grain g;
+    g.place = PRECISE_GRAIN3(position, i);
+    g.radius = precise_load(radius[i]);
+    g.id = id[i];
+    return g;
 }
 
-/* Calls TAKE(j) for every grain that i pairs with, level by level and cell by cell. */
-#define TABLE_FOR_PARTNERS(TAKE)                                                                                              \
-    for (int l = table_level(grid, ri); l >= 0; l--) {                                                                        \
-        __global const clast_level *v = grid->level + l;                                                                      \
-        int n0 = v->cells[0], n1 = v->cells[1], n2 = v->cells[2];                                                             \
-        int cx = table_wrap((xi.x - number(grid->origin[0])) * number(v->inverse_size[0]), n0);                               \
-        int cy = table_wrap((xi.y - number(grid->origin[1])) * number(v->inverse_size[1]), n1);                               \
-        int cz = table_wrap((xi.z - number(grid->origin[2])) * number(v->inverse_size[2]), n2);                               \
-        int w0 = min(n0, 3), w1 = min(n1, 3), w2 = min(n2, 3);                                                                \
-        for (int z = 0; z < w2; z++) {                                                                                        \
-            int kz = (cz + z + (w2 == 3 ? n2 - 1 : 0)) % n2;                                                                  \
-            for (int y = 0; y < w1; y++) {                                                                                    \
-                int ky = (cy + y + (w1 == 3 ? n1 - 1 : 0)) % n1, row = v->first_cell + (kz * n1 + ky) * n0;                   \
-                bool whole = w0 == 3 && cx > 0 && cx < n0 - 1;                                                                \
-                for (int x = 0; x < (whole ? 1 : w0); x++) {                                                                  \
-                    int kx = whole ? cx - 1 : (cx + x + (w0 == 3 ? n0 - 1 : 0)) % n0;                                         \
-                    uint end = cell_start[row + kx + (whole ? 3 : 1)];                                                        \
-                    for (uint j = cell_start[row + kx]; j < end; j++)                                                         \
-                        if (table_pairs(&launch, skin, i, place, radius_i, id_i, j, position, radius, id)) {                           \
-                            TAKE(j);                                                                                          \
-                        }                                                                                                     \
-                }                                                                                                             \
-            }                                                                                                                 \
-        }                                                                                                                     \
+/* True where the two are within reach; the same from either side. */
+INLINE bool table_near(const clast_launch *launch, real skin, const table_grain *g, int j, __global const exact *restrict position,
+                       __global const exact *restrict radius)
+{
+    vec3 d = apart_vector(periodic_nearest(launch, apart_of(PRECISE_GRAIN3(position, j), g->place)));
+    real reach = rounded(g->radius) + rounded(precise_load(radius[j])) + skin;
+    return dot3(d, d) < reach * reach;
+}
+
+/* True where the grain owns its pair with j. */
+INLINE bool table_owns(const table_grain *g, int j, __global const exact *restrict radius, __global const int *restrict id)
+{
+    precise radius_j = precise_load(radius[j]);
+    return precise_less(g->radius, radius_j) || (!precise_less(radius_j, g->radius) && id[j] > g->id);
+}
+
+/* Cells beside a border are those at the other one; a division would cost more than the rest of a row. */
+INLINE int table_beside(int c, int cells)
+{
+    return c < 0 ? c + cells : c >= cells ? c - cells : c;
+}
+
+/* Calls TAKE(j) for the grains in `count` cells of a row from x on. Neighbours along x stand one after the other, but for those beyond the border. */
+#define TABLE_ROW(row, x, count, cells, TAKE)                                          \
+    for (int at_x = table_beside(x, cells), left = (count); left > 0; at_x = 0) {      \
+        int run = min(left, (cells)-at_x);                                             \
+        uint last = cell_start[(row) + at_x + run];                                    \
+        left -= run;                                                                   \
+        for (uint j = cell_start[(row) + at_x]; j < last; j++) {                       \
+            TAKE(j);                                                                   \
+        }                                                                              \
     }
 
-/* Pairs owned by each grain, and slots each grain needs. slot_count must be zero before. The first `room` partners of each grain are `kept`, so
- * that most grains need not be searched for twice. */
+/* For the grains in the cell at `spot` and in all beside it. */
+#define TABLE_AROUND(v, spot, TAKE)                                                                                         \
+    {                                                                                                                       \
+        int n0 = (v)->cells[0], n1 = (v)->cells[1], n2 = (v)->cells[2], w0 = min(n0, 3), w1 = min(n1, 3), w2 = min(n2, 3); \
+        for (int z = 0; z < w2; z++)                                                                                        \
+            for (int y = 0; y < w1; y++) {                                                                                  \
+                int ky = table_beside((spot).y + y - (w1 == 3), n1), kz = table_beside((spot).z + z - (w2 == 3), n2);       \
+                TABLE_ROW((v)->first_cell + (kz * n1 + ky) * n0, (spot).x - (w0 == 3), w0, n0, TAKE)                        \
+            }                                                                                                               \
+    }
+
+/* Pairs owned by each grain, and slots each grain needs; both counts must be zero before. The first `room` partners of each grain are `kept`,
+ * in any order, so that most grains need not be searched for twice. Of two grains of a level the first comes upon the second: a pair is seen once. */
 __kernel void table_count(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
                           __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id,
                           __global uint *restrict own_count, __global uint *restrict slot_count, __global int *restrict kept, const int room)
 {
     int i = get_global_id(0);
-    if (i >= launch.particle_count) {
-        own_count[i] = 0;
+    if (i >= launch.particle_count)
         return;
+    table_grain g = table_grain_of(i, position, radius, id);
+    real skin = number(grid->skin);
+    uint met = 0;
+#define TABLE_COUNT(j)                                                                          \
+    if (table_near(&launch, skin, &g, j, position, radius)) {                                   \
+        bool mine = table_owns(&g, j, radius, id);                                              \
+        int owns = mine ? i : (int)(j);                                                         \
+        uint row = atomic_inc((volatile __global uint *)&own_count[owns]);                      \
+        if (row < (uint)room)                                                                   \
+            kept[(size_t)owns * room + row] = mine ? (int)(j) : i;                              \
+        met++;                                                                                  \
+        atomic_inc((volatile __global uint *)&slot_count[j]);                                   \
     }
-    precise3 place = PRECISE_GRAIN3(position, i);
-    precise radius_i = precise_load(radius[i]);
-    vec3 xi = rounded3(place);
-    real ri = rounded(radius_i), skin = number(grid->skin);
-    int id_i = id[i];
-    uint found = 0;
-#define TABLE_COUNT(j)                                          \
-    if (found < (uint)room)                                     \
-        kept[(size_t)i * room + found] = j;                     \
-    found++;                                                    \
-    atomic_inc((volatile __global uint *)&slot_count[j])
-    TABLE_FOR_PARTNERS(TABLE_COUNT)
-    own_count[i] = found;
-    atomic_add((volatile __global uint *)&slot_count[i], found);
+#define TABLE_COUNT_LATER(j) \
+    if ((int)(j) > i)        \
+    TABLE_COUNT(j)
+    int own_level = table_level(grid, rounded(g.radius));
+    for (int l = own_level; l >= 0; l--) {
+        __global const clast_level *v = grid->level + l;
+        table_spot spot = table_spot_of(grid, l, rounded3(g.place));
+        int n0 = v->cells[0], n1 = v->cells[1], n2 = v->cells[2];
+        if (l < own_level)
+            TABLE_AROUND(v, spot, TABLE_COUNT)
+        else if (min(n0, min(n1, n2)) < 3) /* cells before it are cells behind it too */
+            TABLE_AROUND(v, spot, TABLE_COUNT_LATER)
+        else {
+            int y = table_beside(spot.y + 1, n1), z = table_beside(spot.z + 1, n2);
+            TABLE_ROW(v->first_cell + (spot.z * n1 + spot.y) * n0, spot.x, 1, n0, TABLE_COUNT_LATER)
+            TABLE_ROW(v->first_cell + (spot.z * n1 + spot.y) * n0, spot.x + 1, 1, n0, TABLE_COUNT)
+            TABLE_ROW(v->first_cell + (spot.z * n1 + y) * n0, spot.x - 1, 3, n0, TABLE_COUNT)
+            for (int side = -1; side <= 1; side++)
+                TABLE_ROW(v->first_cell + (z * n1 + table_beside(spot.y + side, n1)) * n0, spot.x - 1, 3, n0, TABLE_COUNT)
+        }
+    }
+    atomic_add((volatile __global uint *)&slot_count[i], met);
 }
 
 /* Writes the pairs of each grain, sorted by the partner's permanent id. */
@@ -174,17 +229,18 @@ __kernel void table_fill(const clast_launch launch, __global const clast_grid *r
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
-    precise3 place = PRECISE_GRAIN3(position, i);
-    precise radius_i = precise_load(radius[i]);
-    vec3 xi = rounded3(place);
-    real ri = rounded(radius_i), skin = number(grid->skin);
-    int id_i = id[i];
+    table_grain g = table_grain_of(i, position, radius, id);
+    real skin = number(grid->skin);
     uint first = own_start[i], k = first;
 #define TABLE_WRITE(j)                                              \
     uint at = k++;                                                  \
     for (; at > first && id[other[at - 1]] > id[j]; at--)           \
         other[at] = other[at - 1];                                  \
     other[at] = j
+#define TABLE_WRITE_OWNED(j)                                                                                       \
+    if ((int)(j) != i && table_owns(&g, j, radius, id) && table_near(&launch, skin, &g, j, position, radius)) {             \
+        TABLE_WRITE(j);                                                                                                     \
+    }
     int count = (int)(own_start[i + 1] - first);
     if (count <= room) {
         for (int m = 0; m < count; m++) {
@@ -192,7 +248,10 @@ __kernel void table_fill(const clast_launch launch, __global const clast_grid *r
             TABLE_WRITE(j);
         }
     } else {
-        TABLE_FOR_PARTNERS(TABLE_WRITE)
+        for (int l = table_level(grid, rounded(g.radius)); l >= 0; l--) {
+            table_spot spot = table_spot_of(grid, l, rounded3(g.place));
+            TABLE_AROUND(grid->level + l, spot, TABLE_WRITE_OWNED)
+        }
     }
     for (uint a = first; a < k; a++)
         owner[a] = i;
@@ -263,18 +322,21 @@ __kernel void table_sort_slots(const clast_launch launch, __global const int *re
     }
 }
 
-/* Of every block the last record of a pair that its grains take part in; -1: none. */
-__kernel void table_last_records(__global const uint *restrict slot_offset, __global const int *restrict slots, __global int *restrict last_record,
-                                 const int wall_base, const int blocks)
+/* Of every block the first and the last record of a pair that its grains take part in; wall_base and -1: none. */
+__kernel void table_last_records(__global const uint *restrict slot_offset, __global const int *restrict slots, __global int *restrict first_record,
+                                 __global int *restrict last_record, const int wall_base, const int blocks)
 {
     int block = get_global_id(0);
     if (block >= blocks)
         return;
-    int last = -1;
+    int first = wall_base, last = -1;
     for (uint s = slot_offset[block]; s < slot_offset[block + 1]; s++) {
         int k = abs(slots[s]) - 1;
-        last = k < wall_base ? max(last, k) : last;
+        bool pair = k >= 0 && k < wall_base;
+        first = pair ? min(first, k) : first;
+        last = pair ? max(last, k) : last;
     }
+    first_record[block] = first;
     last_record[block] = last;
 }
 

@@ -39,9 +39,7 @@ __kernel void table_bond_inverse(const clast_launch launch, __global const int *
         int j = inverse[entry > 0 ? old_other[a] : old_owner[a]];                                                             \
         if (j < 0)                                                                                                            \
             continue;                                                                                                         \
-        precise radius_j = precise_load(radius[j]);                                                                           \
-        bool owns = precise_less(radius_i, radius_j) || (!precise_less(radius_j, radius_i) && id[j] > id_i);                  \
-        if (owns && !table_pairs(&launch, skin, i, place, radius_i, id_i, j, position, radius, id)) {                         \
+        if (table_owns(&g, j, radius, id) && !table_near(&launch, skin, &g, j, position, radius)) {                           \
             TAKE(j);                                                                                                          \
         }                                                                                                                     \
     }
@@ -57,10 +55,8 @@ __kernel void table_bond_count(const clast_launch launch, __global const clast_g
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
-    precise3 place = PRECISE_GRAIN3(position, i);
-    precise radius_i = precise_load(radius[i]);
+    table_grain g = table_grain_of(i, position, radius, id);
     real skin = number(grid->skin);
-    int id_i = id[i];
     uint found = own_count[i], before = found;
 #define TABLE_COUNT_BONDED(j)                                   \
     if (found < (uint)room)                                     \
@@ -83,10 +79,8 @@ __kernel void table_bond_fill(const clast_launch launch, __global const clast_gr
     int i = get_global_id(0);
     if (i >= launch.particle_count || (int)(own_start[i + 1] - own_start[i]) <= room)
         return;
-    precise3 place = PRECISE_GRAIN3(position, i);
-    precise radius_i = precise_load(radius[i]);
+    table_grain g = table_grain_of(i, position, radius, id);
     real skin = number(grid->skin);
-    int id_i = id[i];
     uint extra = 0;
 #define TABLE_TALLY_BONDED(j) extra++
     {

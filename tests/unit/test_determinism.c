@@ -228,6 +228,8 @@ static void test_bits(void **state)
     compare(v, &reference, (manner){.rebuild_every = 10}, "a table every ten steps");
     compare(v, &reference, (manner){.table = "step_form: two_kernels"}, "two kernels a step");
     compare(v, &reference, (manner){.table = "chunk_records: 64, step_form: two_kernels"}, "steps in chunks");
+    compare(v, &reference, (manner){.table = "step_form: team"}, "a team");
+    compare(v, &reference, (manner){.table = "step_form: phases, chunk_records: 64"}, "a launch a phase");
     compare(v, &reference, (manner){.table = "kernel_form: items, step_form: two_kernels"}, "a grain or contact to a work-item");
     compare(v, &reference, (manner){.table = "kernel_form: blocks, chunk_records: 64, step_form: two_kernels"}, "a block to a work-item");
     if (v == MOVING_WALL || v == SHEARED || v == EXPANDING) {
@@ -248,10 +250,11 @@ static void test_bits(void **state)
 static void test_forms_halt_alike(void **state)
 {
     (void)state;
-    static const char *const form[] = {"step_form: one_group, batch_steps: 64", "step_form: two_kernels, batch_steps: 64", "batch_steps: 64"};
-    dump d[3];
-    int64_t rebuilds[3], rebuild_step[3];
-    for (int f = 0; f < 3; f++) {
+    static const char *const form[] = {"step_form: one_group, batch_steps: 64", "step_form: two_kernels, batch_steps: 64", "batch_steps: 64",
+                                       "step_form: team, batch_steps: 64", "step_form: phases, batch_steps: 64, chunk_records: 64"};
+    dump d[5];
+    int64_t rebuilds[5], rebuild_step[5];
+    for (int f = 0; f < 5; f++) {
         sim_case c;
         const manner how = {.table = form[f]};
         open_variant(&c, MOVING_WALL, &how);
@@ -262,7 +265,7 @@ static void test_forms_halt_alike(void **state)
         d[f] = dump_of(c.sim);
         case_close(&c);
     }
-    for (int f = 1; f < 3; f++) {
+    for (int f = 1; f < 5; f++) {
         assert_same_bits(&d[0], &d[f], form[f]);
         assert_int_equal(rebuilds[f], rebuilds[0]);
         assert_int_equal(rebuild_step[f], rebuild_step[0]);

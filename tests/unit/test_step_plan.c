@@ -37,12 +37,17 @@ static bed packed(bool boulders)
     return b;
 }
 
-static void open_bed(sim_case *c, const char *rest, bool boulders, const char *chunk)
+static void open_bed_in(sim_case *c, const char *rest, bool boulders, const char *chunk, const char *form)
 {
     char yaml[4096];
-    snprintf(yaml, sizeof yaml, "%scontact_table: {chunk_records: %s, step_form: two_kernels}\n", rest, chunk);
+    snprintf(yaml, sizeof yaml, "%scontact_table: {chunk_records: %s, step_form: %s}\n", rest, chunk, form);
     case_open_bed(c, yaml, packed(boulders));
     simulation_set_step(c->sim, 1e-5);
+}
+
+static void open_bed(sim_case *c, const char *rest, bool boulders, const char *chunk)
+{
+    open_bed_in(c, rest, boulders, chunk, "two_kernels");
 }
 
 /* ---- the order of the pieces ---- */
@@ -74,7 +79,7 @@ static void free_copy(table_copy *r)
 }
 
 /* The pair stage puts record k where the piece says. */
-static void put_records(const simulation *sim, const step_piece *piece, const table_copy *r, const bool *moved, int *at)
+static void put_records(const simulation *sim, const clast_piece *piece, const table_copy *r, const bool *moved, int *at)
 {
     for (int k = piece->first * CLAST_BLOCK; k < (piece->first + piece->count) * CLAST_BLOCK; k++) {
         assert_true(k >= 0 && k < sim->table.record_count && k - piece->force_shift >= 0 && k - piece->force_shift < sim->table.record_count);
@@ -87,7 +92,7 @@ static void put_records(const simulation *sim, const step_piece *piece, const ta
 }
 
 /* The particle stage finds every record of its blocks, where its slots lead. */
-static void take_blocks(const simulation *sim, const step_piece *piece, const table_copy *r, bool *moved, const int *at)
+static void take_blocks(const simulation *sim, const clast_piece *piece, const table_copy *r, bool *moved, const int *at)
 {
     for (int b = piece->first; b < piece->first + piece->count; b++) {
         assert_true(b >= 0 && (int64_t)b * CLAST_BLOCK < sim->count && !moved[b]);
@@ -101,7 +106,26 @@ static void take_blocks(const simulation *sim, const step_piece *piece, const ta
     }
 }
 
-static void assert_in_order(simulation *sim)
+/* Piece number `n` of a step where the streams go one after the other, the last one first. */
+static int with_streams_reversed(const step_plan *plan, int n)
+{
+    const clast_phases *phases = &plan->phases;
+    int streams = 0;
+    for (int p = 0; p < phases->count; p++)
+        streams = phases->phase[p].streams ? phases->phase[p].end : streams;
+    if (streams == 0 || n < phases->stream[0] || n >= phases->stream[streams])
+        return n;
+    int at = n - phases->stream[0];
+    for (int s = streams - 1; s >= 0; s--) {
+        int pieces = phases->stream[s + 1] - phases->stream[s];
+        if (at < pieces)
+            return phases->stream[s] + at;
+        at -= pieces;
+    }
+    return -1;
+}
+
+static void assert_in_order(simulation *sim, bool reversed)
 {
     table_copy r = copy_table(sim);
     int64_t blocks = (sim->count + CLAST_BLOCK - 1) / CLAST_BLOCK, records = 0, done = 0;
@@ -111,7 +135,7 @@ static void assert_in_order(simulation *sim)
     assert_non_null(at);
     memset(at, -1, sizeof *at * (size_t)sim->table.record_count);
     for (int p = 0; p < sim->plan.count; p++) {
-        const step_piece *piece = &sim->plan.piece[p];
+        const clast_piece *piece = &sim->plan.piece[reversed ? with_streams_reversed(&sim->plan, p) : p];
         if (piece->pairs)
             put_records(sim, piece, &r, moved, at);
         else
@@ -136,7 +160,7 @@ static void test_order(void **state)
                 open_bed(&one, wraps ? COMMON GRAINS PERIODIC : COMMON GRAINS FLOOR, boulders, chunks[c]);
                 assert_int_equal(one.sim->plan.chunk_records, atoi(chunks[c]));
                 assert_true(one.sim->plan.count > 4);
-                assert_in_order(one.sim);
+                assert_in_order(one.sim, false);
                 case_close(&one);
             }
 }
@@ -152,6 +176,28 @@ static void test_forces_share_places(void **state)
     case_close(&c);
 }
 
+/* Streams do not wait for one another, so they may go in any order. */
+static void test_streams(void **state)
+{
+    (void)state;
+    static const char *const chunks[] = {"64", "256", "auto"};
+    int units = (int)case_device()->info.compute_units;
+    for (int c = 0; c < 3; c++)
+        for (int wraps = 0; wraps < 2; wraps++)
+            for (int reversed = 0; reversed < 2; reversed++) {
+                sim_case one;
+                open_bed_in(&one, wraps ? COMMON GRAINS PERIODIC : COMMON GRAINS FLOOR, false, chunks[c], "phases");
+                const clast_phases *phases = &one.sim->plan.phases;
+                const clast_phase *streams = &phases->phase[phases->phase[0].streams ? 0 : 1];
+                if (units > 1) {
+                    assert_true(streams->end == (units < one.sim->plan.count ? units : streams->end) && streams->units == streams->end);
+                    assert_true(c > 0 || wraps || one.sim->plan.force_records > 0);
+                }
+                assert_in_order(one.sim, reversed);
+                case_close(&one);
+            }
+}
+
 /* Two launches where nothing is gained by more. */
 static void test_small_beds_go_whole(void **state)
 {
@@ -160,7 +206,7 @@ static void test_small_beds_go_whole(void **state)
     open_bed(&c, COMMON GRAINS FLOOR, false, "auto");
     assert_int_equal(c.sim->plan.count, 2);
     assert_int_equal(c.sim->plan.chunk_records, 0);
-    assert_in_order(c.sim);
+    assert_in_order(c.sim, false);
     case_close(&c);
 }
 
@@ -303,7 +349,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_order),
-        cmocka_unit_test(test_forces_share_places),
+        cmocka_unit_test(test_forces_share_places), cmocka_unit_test(test_streams),
         cmocka_unit_test(test_small_beds_go_whole),
         cmocka_unit_test(test_bits),
         cmocka_unit_test(test_bits_with_everything),

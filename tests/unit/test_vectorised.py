@@ -78,6 +78,18 @@ class Vectorised(unittest.TestCase):
     def test_friction_and_plane(self):
         self.check(MINDLIN, PLANE)
 
+    def test_many_steps_in_one_launch(self):
+        """The kernel that CPUs take by themselves is made of the same bodies."""
+        text = SCENE.replace("EFFECTS", MINDLIN + ROLLING).replace("WALLS", BOX).replace("DYNAMIC", "0.4").replace("EXPONENT", "1")
+        pairs = VECTOR.machine_code(CLAST, text, "pair_stage")
+        code = VECTOR.machine_code(CLAST, text.replace("two_kernels", "one_group"), "step_loop")
+        if code is None or pairs is None:
+            self.skipTest("this pocl leaves no kernels in its cache")
+        found, least = VECTOR.counts(code), VECTOR.counts(pairs)
+        self.assertGreaterEqual(found["vector roots"], least["vector roots"], f"{found}, alone {least}")
+        self.assertGreater(found["vector divisions"], least["vector divisions"], f"{found}, alone {least}")  # those of the particle stage too
+        self.assertEqual(found["calls"], [])
+
     def test_mixed(self):
         self.check(MINDLIN + ROLLING, PLANE + "\nprecision: mixed")
 
