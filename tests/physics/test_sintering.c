@@ -138,6 +138,24 @@ static void test_ends(void **state)
     case_close(&c);
 }
 
+/* A growth that is no number in float, 27/8 D gamma/r*^4 = 1e39 1/s, ends at the largest neck in the first step all the same. */
+static void test_faster_than_any_step(void **state)
+{
+    (void)state;
+    const double r = 1.0e-8;
+    text t = {0};
+    put(&t, "effects: [{slot: normal, law: hertz}, {slot: bond, law: sintering}]\n");
+    put(&t, "materials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: 2.0e9, poissons_ratio: 0.34, specific_heat_j_kgk: 385}]\n", density);
+    put(&t, "interactions: [{between: default, normal_damping_ratio: 0.3, bond_damping_ratio: 1, bond_youngs_modulus_pa: 6.0e6, surface_energy_j_m2: 1.0e6, "
+            "boundary_diffusion_m3_s: 1, atomic_volume_m3: 1.0e-20, activation_energy_j_mol: 20, neck_radius_ratio_least: 0.1, "
+            "neck_radius_ratio_most: 0.2}]\nparticles:\n");
+    put_pair(&t, 0, (double[]){r, r}, (double[]){700, 700});
+    physics_case c = case_open(&t);
+    case_run(&c, 10, 1e-12);
+    RELATIVE(sixth(&c, 0), pow(0.2 * r, 6), within(1e-9, LAW));
+    case_close(&c);
+}
+
 /* Heat flows through the neck: k pi a^2/distance, 2 a k, and the pipes of half angle asin(a/r). */
 static void test_conduction(void **state)
 {
@@ -235,6 +253,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closed_form), cmocka_unit_test(test_mixed), cmocka_unit_test(test_load),     cmocka_unit_test(test_ends),
+        cmocka_unit_test(test_faster_than_any_step),
         cmocka_unit_test(test_conduction),  cmocka_unit_test(test_bits),  cmocka_unit_test(test_strength),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
