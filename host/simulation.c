@@ -268,6 +268,7 @@ void simulation_free(simulation *sim)
                             &sim->velocity_now, &sim->spin_now};
     for (size_t m = 0; m < sizeof rest / sizeof *rest; m++)
         store_release(sim, rest[m], 0);
+    free(sim->outbox.copy);
     free(sim->wall_body);
     free(sim->group_body);
     free(sim->group_held);

@@ -71,6 +71,13 @@ typedef struct step_plan {
     int force_records; /* places for forces of pairs; 0: every record has its own */
 } step_plan;
 
+/* Copies of what is on its way to the device, see store.c. */
+#define OUTBOX_BYTES (1 << 17)
+typedef struct outbox {
+    char *copy;
+    uint64_t used;
+} outbox;
+
 /* Who goes through the phases of the steps of a batch, see step_loop.c. */
 typedef enum loop_manner { LOOP_PHASES, LOOP_TEAM, LOOP_ALONE, LOOP_MANNERS } loop_manner;
 
@@ -157,6 +164,7 @@ typedef struct simulation {
     bool particles_stale;   /* `where` lags behind */
     cl_mem where, partial, control, faces, movers, constants, built_position, scratch4;
     step_loop loop;
+    outbox outbox;
     cl_mem velocity_now, spin_now; /* synchronised, where velocities stand half a step behind */
     int64_t partial_capacity;
     contact_table table;

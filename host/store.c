@@ -110,17 +110,31 @@ stored_field *store_find(simulation *sim, const char *name)
     return NULL;
 }
 
+/* What is small is copied and written without waiting for it: to wait costs more than many a kernel. The copies stay until something has been
+ * waited for, which all that was enqueued before it has ended by then. */
 status store_write(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, const void *data, failure *why)
 {
-    if (bytes > 0)
-        TRY_CL(clEnqueueWriteBuffer(sim->device->queue, mem, CL_TRUE, offset, bytes, data, 0, NULL, NULL), "writing to the device");
+    outbox *box = &sim->outbox;
+    if (bytes == 0)
+        return STATUS_OK;
+    if (!box->copy)
+        box->copy = malloc(OUTBOX_BYTES);
+    bool waits = !box->copy || bytes > OUTBOX_BYTES - box->used;
+    if (!waits) {
+        data = memcpy(box->copy + box->used, data, bytes);
+        box->used += (bytes + 63) / 64 * 64;
+    }
+    TRY_CL(clEnqueueWriteBuffer(sim->device->queue, mem, waits ? CL_TRUE : CL_FALSE, offset, bytes, data, 0, NULL, NULL), "writing to the device");
+    box->used = waits ? 0 : box->used;
     return STATUS_OK;
 }
 
 status store_read(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, void *data, failure *why)
 {
-    if (bytes > 0)
-        TRY_CL(clEnqueueReadBuffer(sim->device->queue, mem, CL_TRUE, offset, bytes, data, 0, NULL, NULL), "reading from the device");
+    if (bytes == 0)
+        return STATUS_OK;
+    TRY_CL(clEnqueueReadBuffer(sim->device->queue, mem, CL_TRUE, offset, bytes, data, 0, NULL, NULL), "reading from the device");
+    sim->outbox.used = 0;
     return STATUS_OK;
 }
 

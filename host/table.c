@@ -9,6 +9,8 @@
 #include <time.h>
 
 #define SCAN_CHUNK 1024
+/* Numbers that one thread of a CPU sums up sooner than launches are made. */
+#define SCAN_WHOLE 20000
 /* Reserve on growth, so that a bed that gets denser does not allocate at every table. */
 #define RESERVE 1.08
 /* Steps after a table at which it is asked whether a smaller skin would do; then twice as many. */
@@ -162,6 +164,11 @@ static status scan(simulation *sim, cl_mem values, cl_mem result, int64_t count,
 {
     contact_table *t = &sim->table;
     int chunks = (int)((count + SCAN_CHUNK - 1) / SCAN_CHUNK);
+    if (sim->device->info.cpu && count <= SCAN_WHOLE) {
+        cl_kernel whole = launch_kernel(sim, "scan_whole");
+        TRY(launch_set(whole, "scan_whole", why, "mmi", values, result, (cl_int)count));
+        return launch_run(sim, whole, "scan_whole", 1, 1, why);
+    }
     cl_kernel a = launch_kernel(sim, "scan_chunks"), b = launch_kernel(sim, "scan_sums"), c = launch_kernel(sim, "scan_write");
     TRY(launch_set(a, "scan_chunks", why, "mmi", values, t->sums, (cl_int)count));
     TRY(launch_run(sim, a, "scan_chunks", chunks, 1, why));

@@ -22,6 +22,18 @@ __kernel void scan_sums(__global uint *restrict sums, const int chunks)
     sums[chunks] = sum;
 }
 
+/* All of it by one work-item, where three launches would cost more. */
+__kernel void scan_whole(__global const uint *restrict values, __global uint *restrict result, const int count)
+{
+    uint sum = 0;
+    for (int i = 0; i < count; i++) {
+        uint here = values[i];
+        result[i] = sum;
+        sum += here;
+    }
+    result[count] = sum;
+}
+
 /* result[count] holds the total. */
 __kernel void scan_write(__global const uint *restrict values, __global const uint *restrict sums, __global uint *restrict result, const int count)
 {

@@ -174,6 +174,25 @@ INLINE int table_beside(int c, int cells)
             }                                                                                                               \
     }
 
+/* Grains within reach of one, before they are counted. Whether the next one is near cannot be foretold: it is put down in any case, and stays if it is. */
+#define TABLE_NEAR_ROOM 32
+
+/* Counts the pairs of i with those that are `near`, and keeps each with its owner where there is room. */
+INLINE void table_count_near(int i, const table_grain *g, const int *near, int count, __global const exact *restrict radius, __global const int *restrict id,
+                             __global uint *restrict own_count, __global uint *restrict slot_count, __global int *restrict kept, int room)
+{
+    for (int n = 0; n < count; n++) {
+        int j = near[n];
+        bool mine = table_owns(g, j, radius, id);
+        int owner = mine ? i : j;
+        uint row = atomic_inc((volatile __global uint *)&own_count[owner]);
+        if (row < (uint)room)
+            kept[(size_t)owner * room + row] = mine ? j : i;
+        atomic_inc((volatile __global uint *)&slot_count[j]);
+    }
+    atomic_add((volatile __global uint *)&slot_count[i], (uint)count);
+}
+
 /* Pairs owned by each grain, and slots each grain needs; both counts must be zero before. The first `room` partners of each grain are `kept`,
  * in any order, so that most grains need not be searched for twice. Of two grains of a level the first comes upon the second: a pair is seen once. */
 __kernel void table_count(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
@@ -185,39 +204,41 @@ __kernel void table_count(const clast_launch launch, __global const clast_grid *
         return;
     table_grain g = table_grain_of(i, position, radius, id);
     real skin = number(grid->skin);
-    uint met = 0;
-#define TABLE_COUNT(j)                                                                          \
-    if (table_near(&launch, skin, &g, j, position, radius)) {                                   \
-        bool mine = table_owns(&g, j, radius, id);                                              \
-        int owns = mine ? i : (int)(j);                                                         \
-        uint row = atomic_inc((volatile __global uint *)&own_count[owns]);                      \
-        if (row < (uint)room)                                                                   \
-            kept[(size_t)owns * room + row] = mine ? (int)(j) : i;                              \
-        met++;                                                                                  \
-        atomic_inc((volatile __global uint *)&slot_count[j]);                                   \
+    int near[TABLE_NEAR_ROOM], count = 0;
+#define TABLE_MEET(j)                                                                                        \
+    near[count] = (int)(j);                                                                                  \
+    count += table_near(&launch, skin, &g, j, position, radius) ? 1 : 0;                                     \
+    if (count == TABLE_NEAR_ROOM) {                                                                          \
+        table_count_near(i, &g, near, count, radius, id, own_count, slot_count, kept, room);                 \
+        count = 0;                                                                                           \
     }
-#define TABLE_COUNT_LATER(j) \
-    if ((int)(j) > i)        \
-    TABLE_COUNT(j)
+#define TABLE_MEET_LATER(j) \
+    if ((int)(j) > i) {     \
+        TABLE_MEET(j)       \
+    }
     int own_level = table_level(grid, rounded(g.radius));
     for (int l = own_level; l >= 0; l--) {
         __global const clast_level *v = grid->level + l;
         table_spot spot = table_spot_of(grid, l, rounded3(g.place));
         int n0 = v->cells[0], n1 = v->cells[1], n2 = v->cells[2];
         if (l < own_level)
-            TABLE_AROUND(v, spot, TABLE_COUNT)
+            TABLE_AROUND(v, spot, TABLE_MEET)
         else if (min(n0, min(n1, n2)) < 3) /* cells before it are cells behind it too */
-            TABLE_AROUND(v, spot, TABLE_COUNT_LATER)
+            TABLE_AROUND(v, spot, TABLE_MEET_LATER)
         else {
-            int y = table_beside(spot.y + 1, n1), z = table_beside(spot.z + 1, n2);
-            TABLE_ROW(v->first_cell + (spot.z * n1 + spot.y) * n0, spot.x, 1, n0, TABLE_COUNT_LATER)
-            TABLE_ROW(v->first_cell + (spot.z * n1 + spot.y) * n0, spot.x + 1, 1, n0, TABLE_COUNT)
-            TABLE_ROW(v->first_cell + (spot.z * n1 + y) * n0, spot.x - 1, 3, n0, TABLE_COUNT)
+            int y = table_beside(spot.y + 1, n1), z = table_beside(spot.z + 1, n2), row = v->first_cell + (spot.z * n1 + spot.y) * n0;
+            uint last = cell_start[row + min(spot.x + 2, n0)]; /* the rest of its own cell, and the next */
+            for (uint j = i + 1; j < last; j++) {
+                TABLE_MEET(j)
+            }
+            if (spot.x == n0 - 1)
+                TABLE_ROW(row, 0, 1, n0, TABLE_MEET)
+            TABLE_ROW(v->first_cell + (spot.z * n1 + y) * n0, spot.x - 1, 3, n0, TABLE_MEET)
             for (int side = -1; side <= 1; side++)
-                TABLE_ROW(v->first_cell + (z * n1 + table_beside(spot.y + side, n1)) * n0, spot.x - 1, 3, n0, TABLE_COUNT)
+                TABLE_ROW(v->first_cell + (z * n1 + table_beside(spot.y + side, n1)) * n0, spot.x - 1, 3, n0, TABLE_MEET)
         }
     }
-    atomic_add((volatile __global uint *)&slot_count[i], met);
+    table_count_near(i, &g, near, count, radius, id, own_count, slot_count, kept, room);
 }
 
 /* Writes the pairs of each grain, sorted by the partner's permanent id. */
