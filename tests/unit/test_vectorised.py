@@ -6,6 +6,7 @@ import os
 import platform
 import shutil
 import subprocess
+import tempfile
 import unittest
 
 CLAST = os.environ["CLAST"]
@@ -58,10 +59,12 @@ class Vectorised(unittest.TestCase):
         devices = subprocess.run([CLAST, "devices"], capture_output=True, text=True, timeout=100)
         if "pthread" not in devices.stdout and "cpu" not in devices.stdout:
             raise unittest.SkipTest(f"there is no pocl device: {devices.stdout}{devices.stderr}")
+        cls.caches = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.caches.cleanup)
 
     def check(self, effects, walls, dynamic="0.4", exponent="1"):
         text = SCENE.replace("EFFECTS", effects).replace("WALLS", walls).replace("DYNAMIC", dynamic).replace("EXPONENT", exponent)
-        code = VECTOR.machine_code(CLAST, text)
+        code = VECTOR.machine_code(CLAST, text, caches=self.caches.name)
         if code is None:
             self.skipTest("this pocl leaves no pair_stage in its cache")
         found = VECTOR.counts(code)
