@@ -249,6 +249,27 @@ static void test_guards(void **state)
     case_close(&c);
 }
 
+/* Two plates of a group go past the grain on both sides: the guard names the group, which moves as far as a wall alone would. */
+static void test_guard_of_group(void **state)
+{
+    (void)state;
+    guard_finding found = {0};
+    text t = head("wall_groups: [{name: press, servo: {direction: [0, 0, -1], force_n: 1, speed_max_m_s: 1}}]\nwalls:\n"
+                  "  - {name: left, group: press, shape: disc, center_m: [0, 0, 0.01], normal: [0, 0, 1], radius_m: 0.001}\n"
+                  "  - {name: right, group: press, shape: disc, center_m: [0.04, 0, 0.01], normal: [0, 0, 1], radius_m: 0.001}\n");
+    put_one(&t);
+    put_grain(&t, radius, (double[]){0.02, 0, 0}, none, none);
+    physics_case c = case_open(&t);
+    for (int k = 0; k < 20 && !found.stop; k++) {
+        case_run(&c, 100, 1.0e-5);
+        MUST(guard_check(c.sim, &found, why));
+    }
+    assert_true(found.stop);
+    assert_non_null(strstr(found.text, "the servo of the wall group `press` has moved 0.011"));
+    BETWEEN(c.sim->time, 0.011, 0.0125);
+    case_close(&c);
+}
+
 /* On a floor that shakes faster than half of the lid's largest speed, the lid swings to and fro in every period; a hundred in a row are too many. */
 static void test_swings(void **state)
 {
@@ -343,7 +364,7 @@ int main(void)
         cmocka_unit_test(test_force),      cmocka_unit_test(test_pressure),    cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_checkpoint), cmocka_unit_test(test_group_servo), cmocka_unit_test(test_group_motion),
         cmocka_unit_test(test_guards),     cmocka_unit_test(test_swings),      cmocka_unit_test(test_given_area),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_refusals),   cmocka_unit_test(test_guard_of_group),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
