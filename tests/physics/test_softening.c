@@ -150,12 +150,57 @@ static void test_limit(void **state)
     }
 }
 
+/* dT/dt of TM 5.1 for a sphere that rests at every moment: its overlap is that of its weight at the modulus of its temperature. */
+static double heating(double temperature, double m, double *overlap)
+{
+    const double r = 1e-3, modulus = 1e6 / (1.0 - nu * nu) * factor(temperature, 400, 1, 0);
+    *overlap = hertz_rest(modulus, r, m * 9.8);
+    double conductance = 60.0 * PI * (2.0 * r * *overlap - *overlap * *overlap) / (2.0 * (r - *overlap));
+    return conductance * (700.0 - temperature) / (m * 100.0);
+}
+
+/* Temperature of that sphere after a time, by Runge and Kutta's method. */
+static double heated(double from, double time, double m)
+{
+    const double step = 1e-3;
+    double now = from, unused;
+    for (int n = 0; n < lround(time / step); n++) {
+        double a = heating(now, m, &unused), b = heating(now + 0.5 * step * a, m, &unused), c = heating(now + 0.5 * step * b, m, &unused);
+        now += step / 6.0 * (a + 2.0 * b + 2.0 * c + heating(now + step * c, m, &unused));
+    }
+    return now;
+}
+
+/* TM 5.1: a sphere on a floor of 700 K sinks in as it softens: 479.7878 K after 2 s if it rests from the start. Here the last part of that. */
+static void test_hot_floor(void **state)
+{
+    (void)state;
+    const double m = sphere_mass(3000.0, 1e-3), from = heated(300.0, 1.7, m), expected = heated(300.0, 2.0, m);
+    double overlap, start;
+    NEAR(expected, 479.7878, 1e-4);
+    NEAR(heated(300.0, 12.0, m), 697.1671, 1e-4);
+    heating(from, m, &start);
+    heating(expected, m, &overlap);
+    text t = {0};
+    put(&t, "gravity_m_s2: [0, 0, -9.8]\n"
+            "effects: [{slot: normal, law: hertz}, {slot: conduction, law: overlap_area}, {slot: modulus, law: exponential_softening}]\n"
+            "materials: [{name: m, density_kg_m3: 3000, youngs_modulus_pa: 1.0e6, poissons_ratio: %g, conductivity_w_mk: 60, specific_heat_j_kgk: 100, softening_temperature_k: 400}]\n"
+            "interactions: [{between: default, normal_damping_ratio: 1}]\n"
+            "walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1], temperature_k: 700}]\n"
+            "particles: [{name: s, material: m, generator: list, temperature_k: %.17g, items: [{position_m: [0, 0, %.17g], radius_m: 1.0e-3}]}]\n", nu, from, 1e-3 - start);
+    physics_case c = case_open(&t);
+    case_run(&c, 6000, 5e-5);
+    NEAR(case_get(&c, "temperature", 0, 0), expected, 0.02);
+    RELATIVE(1e-3 - case_get(&c, "position", 0, 2), overlap, 1e-3);
+    case_close(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closed_form),
         cmocka_unit_test(test_impacts),
-        cmocka_unit_test(test_work), cmocka_unit_test(test_limit),
+        cmocka_unit_test(test_work), cmocka_unit_test(test_limit), cmocka_unit_test(test_hot_floor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
