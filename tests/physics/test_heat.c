@@ -180,20 +180,23 @@ static void test_wall_flux(void **state)
 
 #define EVERYTHING                                                                                              \
     "  - {slot: normal, law: hertz}\n  - {slot: conduction, law: overlap_area}\n" NEWTON "\n" RADIATION "\n"     \
-    "  - {slot: heat_generation, law: volumetric}\n"
+    "  - {slot: heat_generation, law: volumetric}\n  - {slot: modulus, law: exponential_softening}\n"                \
+    "  - {slot: radius, law: linear_expansion}\n  - {slot: dissipation_heat, law: fraction}\n"                      \
+    "  - {slot: source, law: laser, name: spot, profile: gaussian, diameter_m: 4.0e-3, direction: [0, 0, -1], attenuation_1_m: 800, "  \
+    "path: {time_s: [0, 0.02], position_m: [[-2.0e-3, 0, 0], [2.0e-3, 0, 0]], power_w: [20, 40]}}\n"
 
 static physics_case everything_open(int batch)
 {
     text t = {0};
     put(&t, "gravity_m_s2: [0, 0, -9.81]\neffects:\n" EVERYTHING "contact_table: {batch_steps: %d}\nmaterials:\n", batch);
-    put(&t, "  - {name: a, density_kg_m3: 7800, conductivity_w_mk: 60, specific_heat_j_kgk: 600, emissivity: 1, heat_generation_w_m3: 1.0e7, youngs_modulus_pa: 1.0e6, poissons_ratio: 0.3}\n"
-            "  - {name: b, density_kg_m3: 3000, conductivity_w_mk: 20, specific_heat_j_kgk: 100, emissivity: 0.3, heat_generation_w_m3: 0, youngs_modulus_pa: 1.0e6, poissons_ratio: 0.3}\n"
+    put(&t, "  - {name: a, density_kg_m3: 7800, conductivity_w_mk: 60, specific_heat_j_kgk: 600, emissivity: 1, heat_generation_w_m3: 1.0e7, youngs_modulus_pa: 1.0e6, poissons_ratio: 0.3, absorptance: 0.5, softening_temperature_k: 350, expansion_1_k: 2.0e-5}\n"
+            "  - {name: b, density_kg_m3: 3000, conductivity_w_mk: 20, specific_heat_j_kgk: 100, emissivity: 0.3, heat_generation_w_m3: 0, youngs_modulus_pa: 1.0e6, poissons_ratio: 0.3, absorptance: 0.5, softening_temperature_k: 350, expansion_1_k: 0}\n"
             "interactions: [{between: default, restitution: 0.3}]\n"
             "environment: {temperature_k: {time_s: [0, 0.01, 0.03], value: [300, 900, 600]}}\n"
             "walls:\n  - {name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1], temperature_k: {time_s: [0, 0.02], value: [700, 1000]}}\n"
             "  - {name: side, shape: plane, point_m: [-4.0e-3, 0, 0], normal: [1, 0, 0], heat_flux_w: 0.3}\n"
             "  - {name: other, shape: plane, point_m: [0.02, 0, 0], normal: [-1, 0, 0]}\n"
-            "output: {observables: [heat_sources, heat_walls, heat_convection, heat_radiation]}\nparticles:\n"
+            "output: {observables: [heat_sources, heat_walls, heat_convection, heat_radiation, heat_dissipation]}\nparticles:\n"
             "  - {name: a, material: a, generator: random, count: 60, temperature_k: 400, radius_m: {distribution: uniform, low: 8.0e-4, high: 1.2e-3},\n"
             "     region: {low_m: [-4.0e-3, -4.0e-3, 0], high_m: [4.0e-3, 4.0e-3, 1.2e-2]}}\n"
             "  - {name: b, material: b, generator: list, temperature_k: 1500, thermal: flux, heat_flux_w: 0.02, items: [{position_m: [0, 0, 0.02], radius_m: 1.0e-3}]}\n"
@@ -210,8 +213,8 @@ static void test_balance(void **state)
     case_run(&c, 3000, 1e-5);
     heat_sums after = case_heat(&c);
     double in = 0.0, most = 0.0;
-    for (int q = 0; q <= CLAST_TALLY_WALLS; q++) { /* what beams bring is among the sources' */
-        in += after.tally[q] - before.tally[q];
+    for (int q = 0; q < CLAST_TALLIES; q++) {
+        in += q == CLAST_TALLY_ABSORBED ? 0.0 : after.tally[q] - before.tally[q]; /* what beams bring is among the sources' */
         most = fmax(most, fabs(after.tally[q]));
         assert_true(after.tally[q] != 0.0);
     }
