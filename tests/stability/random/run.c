@@ -51,7 +51,10 @@ static void what_holds(fuzz_case *c)
 {
     const law *const *live = c->sim->all.law;
     bool passive = free_motion(c->scene) && !c->scene->domain.delete_leaving;
-    c->keeps_energy = passive && !live[SLOT_BOND] && !live[SLOT_COHESION] && !live[SLOT_MODULUS] && !live[SLOT_RADIUS];
+    bool falls_around = false; /* what leaves below comes in above with more of it */
+    for (int d = 0; d < 3; d++)
+        falls_around = falls_around || (c->scene->domain.periodic[d] && c->scene->gravity_m_s2[d] != 0.0);
+    c->keeps_energy = passive && !falls_around && !live[SLOT_BOND] && !live[SLOT_COHESION] && !live[SLOT_MODULUS] && !live[SLOT_RADIUS];
     c->keeps_momentum = passive && c->scene->wall_count == 0 && !live[SLOT_BODY];
     c->keeps_range = live[SLOT_TEMPERATURE] && !live[SLOT_SOURCE] && !live[SLOT_HEAT_GENERATION] && !live[SLOT_DISSIPATION_HEAT] &&
                      live[SLOT_WALL_HEAT] == NULL && !live[SLOT_THERMAL_GROUPS] && !live[SLOT_RADIUS];

@@ -3,6 +3,7 @@
 #include "law.h"
 #include "numbers.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,7 +50,8 @@ typedef struct world {
     bool flat; /* two dimensions: up is y, else z */
     enum { CLOSED, SIDEWAYS, EVERYWHERE } periodic;
     int materials;
-    bool heat, warm, modulus, box, plate, lid, two; /* what the scene has */
+    bool heat, warm, modulus, box, plate, lid, two, slot[SLOT_COUNT]; /* what the scene has */
+    double side, low; /* grains begin within these of the sides and above the floor, clear of its walls */
 } world;
 
 /* [along, across, up] as the scene wants it. Holds for eight calls. */
@@ -109,6 +111,7 @@ static void put_effect(world *w, slot_id slot)
                  strcmp(one->name, "burner") == 0 ? ", depth_max_m: 2.0e-3" : "", place(w, 0.0, 0.0, 0.0), place(w, 0.01, 0.01, 0.0),
                  decades(&w->state, -4.0, 0.0));
     put(w->t, "  - {slot: %s, law: %s%s}", slot_name(slot), one->name, text);
+    w->slot[slot] = true;
     w->modulus = w->modulus || (slot == SLOT_MODULUS && strcmp(one->name, "table") == 0);
     w->heat = w->heat || slot == SLOT_CONDUCTION || slot == SLOT_CONVECTION || slot == SLOT_RADIATION;
     w->warm = w->warm || w->heat || slot == SLOT_MODULUS || slot == SLOT_RADIUS || slot == SLOT_SOURCE;
@@ -156,39 +159,24 @@ static const char *motion(world *w)
     return text;
 }
 
+/* Round walls around the bed, in place of a box. */
 static void put_round(world *w)
 {
-    if (!w->flat && w->periodic == CLOSED && chance(&w->shape, 0.25))
+    w->side = 0.0015;
+    if (chance(&w->shape, 0.6)) {
         put(w->t, "  - {name: tube, shape: cylinder, side: inside, axis_point_m: [0.005, 0.005, -0.01], axis: [0, 0, 1], radius_m: 0.0051, "
                   "length_m: 0.05}");
-    else if (!w->flat && w->periodic == CLOSED && chance(&w->shape, 0.2))
+        put(w->t, "  - {name: bottom, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}");
+    } else {
         put(w->t, "  - {name: funnel, shape: cone, side: inside, axis_point_m: [0.005, 0.005, -0.002], axis: [0, 0, 1], radius_m: [0.003, "
                   "0.012], length_m: 0.02}");
-    if (chance(&w->shape, 0.25))
-        put(w->t, "  - {name: peg, shape: cylinder, side: outside, axis_point_m: %s, axis: [0, %d, %d], radius_m: 1.0e-3, length_m: 0.02}",
-            w->flat ? "[0.005, 0.004, -0.01]" : "[0.005, -0.005, 0.004]", !w->flat, w->flat);
+        w->low = 0.006;
+    }
 }
 
-static void put_walls(world *w)
+/* Obstacles under the grains. */
+static void put_obstacles(world *w)
 {
-    static const char *const heats[] = {"", ", temperature_k: 350", ", heat_flux_w: 1.0e-4",
-                                        ", temperature_k: {time_s: [0, 0.001], value: [300, 500]}"};
-    const char *heat = heats[below(&w->shape, 4)];
-    bool grouped = w->periodic == CLOSED && chance(&w->shape, 0.2);
-    if (chance(&w->shape, w->periodic == EVERYWHERE ? 0.7 : 0.15))
-        return;
-    if (grouped)
-        put(w->t, "wall_groups: [{name: press, servo: {direction: %s, force_n: %.6g, speed_max_m_s: 0.2}}]", place(w, 0.0, 0.0, -1.0),
-            decades(&w->state, -4.0, 0.0));
-    put(w->t, "walls:");
-    if (w->periodic == SIDEWAYS)
-        put(w->t, "  - {name: floor, shape: plane, point_m: [0, 0, 0], normal: %s%s}", place(w, 0.0, 0.0, 1.0), heat);
-    w->box = w->periodic == CLOSED;
-    if (w->box)
-        put(w->t, "  - {name: box, shape: box, low_m: [0, 0, %g], high_m: [0.01, %g, %g]%s%s}", w->flat ? -0.01 : 0.0,
-            w->flat ? 0.02 : 0.01, w->flat ? 0.01 : 0.02, heat,
-            chance(&w->shape, 0.5) ? (w->flat ? ", open: [y_high]" : ", open: [z_high]") : "");
-    w->plate = chance(&w->shape, 0.3);
     if (w->plate && w->flat)
         put(w->t,
             "  - {name: plate, shape: rectangle, corners_m: [[0.003, 0.001, -0.01], [0.007, 0.001, -0.01], [0.003, 0.001, 0.01]], motion: "
@@ -197,7 +185,40 @@ static void put_walls(world *w)
     else if (w->plate)
         put(w->t, "  - {name: plate, shape: disc, center_m: [0.005, 0.005, 0.001], radius_m: 0.003, normal: [0, 0.2, 1], motion: %s}",
             motion(w));
-    put_round(w);
+    bool peg = chance(&w->shape, 0.25);
+    if (peg)
+        put(w->t, "  - {name: peg, shape: cylinder, side: outside, axis_point_m: %s, axis: [0, %d, %d], radius_m: 1.0e-3, length_m: 0.02}",
+            w->flat ? "[0.005, 0.001, -0.01]" : "[0.005, -0.005, 0.001]", !w->flat, w->flat);
+    if (w->plate || peg)
+        w->low = fmax(w->low, 0.0021);
+}
+
+static void put_walls(world *w)
+{
+    static const char *const heats[] = {"", ", temperature_k: 350", ", heat_flux_w: 1.0e-4",
+                                        ", temperature_k: {time_s: [0, 0.001], value: [300, 500]}"};
+    const char *heat = heats[below(&w->shape, 4)];
+    bool grouped = w->periodic == CLOSED && chance(&w->shape, 0.2);
+    w->plate = chance(&w->shape, w->periodic == EVERYWHERE ? 0.3 : 0.35);
+    if (w->periodic == EVERYWHERE ? !w->plate : chance(&w->shape, 0.15)) {
+        w->plate = false;
+        return;
+    }
+    if (grouped)
+        put(w->t, "wall_groups: [{name: press, servo: {direction: %s, force_n: %.6g, speed_max_m_s: 0.2}}]", place(w, 0.0, 0.0, -1.0),
+            decades(&w->state, -4.0, 0.0));
+    put(w->t, "walls:");
+    if (w->periodic == SIDEWAYS)
+        put(w->t, "  - {name: floor, shape: plane, point_m: [0, 0, 0], normal: %s%s}", place(w, 0.0, 0.0, 1.0), heat);
+    bool round = !w->flat && w->periodic == CLOSED && chance(&w->shape, 0.25);
+    w->box = w->periodic == CLOSED && !round;
+    if (round)
+        put_round(w);
+    else if (w->box)
+        put(w->t, "  - {name: box, shape: box, low_m: [0, 0, %g], high_m: [0.01, %g, %g]%s%s}", w->flat ? -0.01 : 0.0,
+            w->flat ? 0.02 : 0.01, w->flat ? 0.01 : 0.02, heat,
+            chance(&w->shape, 0.5) ? (w->flat ? ", open: [y_high]" : ", open: [z_high]") : "");
+    put_obstacles(w);
     if (grouped)
         for (int k = 0; k < 2; k++)
             put(w->t, "  - {name: press%d, shape: plane, point_m: %s, normal: %s, group: press}", k, place(w, 0.0, 0.0, 0.02 + 1e-3 * k),
@@ -242,10 +263,10 @@ static void put_particles(world *w)
         put(w->t,
             "  - {name: g%d, material: m%d, generator: random, count: %d, radius_m: %s, region: {low_m: %s, high_m: %s}, velocity_m_s: %s, "
             "velocity_spread_m_s: %.3f, spin_rad_s: [%.1f, %.1f, %.1f], temperature_k: %.1f%s}",
-            g, g % w->materials, 2 + below(s, 12), radius, place(w, 0.0, 0.0, g * 0.01), place(w, 0.01, 0.01, g * 0.01 + 0.009),
-            place(w, uniform(s, -1, 1), uniform(s, -1, 1), uniform(s, -1, 1)), chance(s, 0.5) ? 0.0 : uniform(s, 0, 1),
-            w->flat ? 0.0 : uniform(s, -100, 100), w->flat ? 0.0 : uniform(s, -100, 100), uniform(s, -100, 100), uniform(s, 100, 600),
-            g ? extras(w) : "");
+            g, g % w->materials, 2 + below(s, 12), radius, place(w, w->side, w->side, g * 0.01 + (g ? 0.0 : w->low)),
+            place(w, 0.01 - w->side, 0.01 - w->side, g * 0.01 + 0.009), place(w, uniform(s, -1, 1), uniform(s, -1, 1), uniform(s, -1, 1)),
+            chance(s, 0.5) ? 0.0 : uniform(s, 0, 1), w->flat ? 0.0 : uniform(s, -100, 100), w->flat ? 0.0 : uniform(s, -100, 100),
+            uniform(s, -100, 100), uniform(s, 100, 600), g ? extras(w) : "");
     }
 }
 
@@ -274,7 +295,7 @@ static void put_change(world *w)
 static void put_stages(world *w)
 {
     static const char *const methods[] = {"explicit", "stabilised", "implicit", "steady"};
-    static const char *const off[] = {"tangential", "rolling", "conduction", "radiation", "body", "cohesion", "source"};
+    static const slot_id off[] = {SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_CONDUCTION, SLOT_RADIATION, SLOT_BODY, SLOT_COHESION, SLOT_SOURCE};
     put(w->t, "stages:");
     if (w->heat && chance(&w->shape, 0.25))
         put(w->t, "  - {name: go, until: {steps: %d}, heat: {every_steps: %d}}", STEPS, 1 + below(&w->state, 20));
@@ -285,8 +306,9 @@ static void put_stages(world *w)
         put(w->t, "  - {name: still, until: {time_s: 1.0e-3}, motion: frozen, heat: {method: %s}}", methods[below(&w->shape, 4)]);
     if (chance(&w->shape, frozen ? 0.5 : 0.35))
         put_change(w);
-    if (chance(&w->shape, 0.2))
-        put(w->t, "  - {name: without, until: {steps: %d}, effects_off: [%s]}", STEPS / 2, off[below(&w->shape, 7)]);
+    slot_id without = off[below(&w->shape, 7)];
+    if (chance(&w->shape, 0.4) && w->slot[without])
+        put(w->t, "  - {name: without, until: {steps: %d}, effects_off: [%s]}", STEPS / 2, slot_name(without));
 }
 
 /* How contacts are searched and steps are enqueued: nothing of it may change what comes out. */
