@@ -141,6 +141,86 @@ static void sticky_pile(const char *precision)
     case_close(&c);
 }
 
+/* ---- grains that swell until they jam ---- */
+
+/* Sum of the forces of a wall on its grains, and of their sizes. */
+static double force_of_wall(physics_case *c, int wall, double sum[3])
+{
+    int64_t count;
+    live_contact *live = case_contacts(c, &count);
+    double sizes = 0.0;
+    memset(sum, 0, 3 * sizeof *sum);
+    for (int64_t k = 0; k < count; k++) {
+        if (live[k].wall != wall)
+            continue;
+        const double *f = live[k].force;
+        sizes += sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+        for (int a = 0; a < 3; a++)
+            sum[a] += f[a];
+    }
+    free(live);
+    return sizes;
+}
+
+static void swells(physics_case *c, const char *name)
+{
+    double e[LEDGER_TERMS], overlap = 0.0, energy = hard_energy(c);
+    while (c->sim->time < (hard_long() ? 0.1 : 0.012)) {
+        hard_auto(c, 400, 1.0);
+        overlap = fmax(overlap, case_contact_sums(c).overlap_max);
+    }
+    MUST(ledger_read(c->sim, e, why));
+    particle_sums sums = case_sums(c);
+    double moves = sums.kinetic + sums.rotational, elastic = case_contact_sums(c).elastic;
+    double lost = e[NORMAL] + e[TANGENTIAL] + e[ROLLING], fed = e[EXPANSION] + e[WALLS];
+    hard_margin(c, name, "largest overlap over the smaller radius", overlap, 0.3);
+    hard_margin(c, name, "motion at the end over what is stored", moves / elastic, hard_long() ? 1e-12 : 1e-3);
+    hard_margin(c, name, "energy that is missing over the work of expansion", fabs(hard_energy(c) - energy + lost - fed) / e[EXPANSION],
+                0.02);
+}
+
+static void jam_box(const char *precision)
+{
+    physics_case c = hard_open("jam_box", precision, NULL);
+    swells(&c, "swelling in a closed box");
+    double *x = case_field(&c, "position"), *r = case_field(&c, "radius"), deep = 0.0, force[3], sizes = force_of_wall(&c, 0, force);
+    for (int64_t n = 0; n < c.bed.count; n++)
+        for (int a = 0; a < 3; a++)
+            deep = fmax(deep, 1.0 - fmin(x[3 * n + a], 8.0e-3 - x[3 * n + a]) / r[n]);
+    hard_margin(&c, "swelling in a closed box", "depth in a wall over the radius", deep, 0.3);
+    /* faces that bear the same are what rest means */
+    hard_margin(&c, "swelling in a closed box", "force of all its walls over the sum of its forces",
+                fmax(fmax(fabs(force[0]), fabs(force[1])), fabs(force[2])) / sizes, hard_long() || !is_mixed(precision) ? 1e-6 : 1e-4);
+    free(x);
+    free(r);
+    case_close(&c);
+}
+
+static void jam_periodic(const char *precision)
+{
+    physics_case c = hard_open("jam_periodic", precision, NULL);
+    swells(&c, "swelling in a periodic box");
+    particle_sums sums = case_sums(&c);
+    double most = 0.0;
+    for (int a = 0; a < 3; a++)
+        most = fmax(most, fabs(sums.momentum[a]));
+    /* of grains that move by a tenth of their size in the time that they swell */
+    hard_margin(&c, "swelling in a periodic box", "momentum over that of 1 mm in 5 ms", most / (sums.mass * 0.2),
+                is_mixed(precision) ? 1e-5 : 1e-12);
+    case_close(&c);
+}
+
+static void jam_servo(const char *precision)
+{
+    physics_case c = hard_open("jam_servo", precision, NULL);
+    swells(&c, "swelling under a lid");
+    double lid[3];
+    force_of_wall(&c, 1, lid);
+    hard_margin(&c, "swelling under a lid", "force on the lid from its pressure, share", fabs(fabs(lid[2]) / (2.0e4 * 6.4e-5) - 1.0),
+                hard_long() ? 1e-6 : 1e-2);
+    case_close(&c);
+}
+
 /* ---- everything ---- */
 
 static void everything(const char *precision)
@@ -179,6 +259,9 @@ IN_EVERY_PRECISION(radiation)
 IN_EVERY_PRECISION(parting)
 IN_EVERY_PRECISION(bonded_chain)
 IN_EVERY_PRECISION(sticky_pile)
+IN_EVERY_PRECISION(jam_box)
+IN_EVERY_PRECISION(jam_periodic)
+IN_EVERY_PRECISION(jam_servo)
 IN_EVERY_PRECISION(everything)
 
 int main(void)
@@ -186,7 +269,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(softening_all),  cmocka_unit_test(heating_all),      cmocka_unit_test(radiation_all),
         cmocka_unit_test(parting_all),    cmocka_unit_test(bonded_chain_all), cmocka_unit_test(sticky_pile_all),
-        cmocka_unit_test(everything_all),
+        cmocka_unit_test(everything_all), cmocka_unit_test(jam_box_all),      cmocka_unit_test(jam_periodic_all),
+        cmocka_unit_test(jam_servo_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
