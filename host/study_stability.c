@@ -155,7 +155,7 @@ static status run_on(simulation *sim, double factor, double fixed, double span, 
 
 static status open_at(study *s, const bundle *state, simulation **sim, failure *why)
 {
-    TRY(simulation_create(s->scene, &s->bed, &s->device, s->options->kernels, sim, why));
+    TRY(simulation_create(s->scene, &s->bed, &s->device, s->options->run.kernels, sim, why));
     return state_load(*sim, state, "the state at the start of the stage", why);
 }
 
@@ -379,7 +379,7 @@ static FILE *open_in(const char *folder, const char *name, failure *why)
 
 static status write_files(const study *s, json_t *json, failure *why)
 {
-    const char *folder = s->options->out;
+    const char *folder = s->options->run.out;
     FILE *file = open_in(folder, "stability.json", why);
     if (!file)
         return STATUS_BAD_INPUT;
@@ -417,7 +417,7 @@ static status make_folder(const char *path, failure *why)
 static status tell(const study *s, failure *why)
 {
     json_t *json = study_json(s);
-    status result = s->options->out ? write_files(s, json, why) : STATUS_OK;
+    status result = s->options->run.out ? write_files(s, json, why) : STATUS_OK;
     if (s->options->json) {
         json_dumpf(json, stdout, JSON_INDENT(2));
         putchar('\n');
@@ -448,16 +448,16 @@ static status last_stage(const study *s, int *last, failure *why)
 static status prepare(study *s, int *last, failure *why)
 {
     const stability_options *o = s->options;
-    TRY(make_folder(o->out, why));
-    TRY(scene_read(o->scene_path, o->set_count, o->sets, &s->scene, why));
-    if (o->precision)
-        precision_find(o->precision, &s->scene->precision);
+    TRY(make_folder(o->run.out, why));
+    TRY(scene_read(o->run.scene_path, o->run.set_count, o->run.sets, &s->scene, why));
+    if (o->run.precision)
+        precision_find(o->run.precision, &s->scene->precision);
     TRY(last_stage(s, last, why));
     TRY(bed_generate(s->scene, &s->bed, why));
     s->result = calloc((size_t)s->scene->stage_count, sizeof *s->result);
     if (!s->result)
         return fail(why, STATUS_ERROR, "out of memory");
-    return device_open(o->device, s->scene->precision != PRECISION_MIXED, &s->device, why);
+    return device_open(o->run.device, s->scene->precision != PRECISION_MIXED, &s->device, why);
 }
 
 status study_stability(const stability_options *options, failure *why)
@@ -467,7 +467,7 @@ status study_stability(const stability_options *options, failure *why)
     int last;
     status result = prepare(&s, &last, why);
     if (result == STATUS_OK)
-        result = simulation_create(s.scene, &s.bed, &s.device, options->kernels, &sim, why);
+        result = simulation_create(s.scene, &s.bed, &s.device, options->run.kernels, &sim, why);
     for (int k = 0; result == STATUS_OK && k <= last; k++)
         result = study_stage(&s, sim, k, why);
     if (result == STATUS_OK)

@@ -66,8 +66,7 @@ static error_t parse_bench(int key, char *argument, struct argp_state *state)
         input->options.steps = option_count(state, "--steps", argument, 1, 1000000000000);
         return 0;
     case KEY_PRECISION:
-        if (!precision_find(argument, &found))
-            option_refuse(state, "--precision: `%s` is none of auto, double, mixed", argument);
+        precision_find(option_precision(state, argument), &found);
         input->options.mixed = found == PRECISION_MIXED;
         return 0;
     case KEY_EFFECTS:
@@ -137,9 +136,7 @@ static const struct argp bench_argp = {
 status command_bench(int argc, char **argv, failure *why)
 {
     bench_input input = {.options = bench_options_default()};
-    error_t error = argp_parse(&bench_argp, argc, argv, 0, NULL, &input);
-    if (error)
-        return fail(why, STATUS_ERROR, "%s", strerror(error));
+    TRY(command_parse(&bench_argp, 0, argc, argv, &input, why));
     input.options.device = input.device.device;
     input.options.kernels = input.device.kernels;
     return input.chosen->run(&input.options, why);

@@ -7,32 +7,23 @@
 enum { KEY_JSON = 256, KEY_PROBE };
 
 typedef struct check_input {
-    const char *scene_path;
+    scene_input scene;
     bool json, probe;
-    device_options device;
-    set_options set;
 } check_input;
 
 static error_t parse_check(int key, char *argument, struct argp_state *state)
 {
     check_input *input = state->input;
+    (void)argument;
     switch (key) {
     case ARGP_KEY_INIT:
-        state->child_inputs[0] = &input->device;
-        state->child_inputs[1] = &input->set;
+        state->child_inputs[0] = &input->scene;
         return 0;
     case KEY_JSON:
         input->json = true;
         return 0;
     case KEY_PROBE:
         input->probe = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        option_only(state, &input->scene_path, argument);
-        return 0;
-    case ARGP_KEY_END:
-        if (!input->scene_path)
-            option_refuse(state, "which scene? Name a SCENE.yaml");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -44,7 +35,7 @@ static const struct argp_option check_option[] = {
     {"probe", KEY_PROBE, NULL, 0, "Run a few steps to estimate the speed", 0},
     {0},
 };
-static const struct argp_child check_children[] = {{.argp = &device_options_argp}, {.argp = &set_options_argp}, {0}};
+static const struct argp_child check_children[] = {{.argp = &scene_input_argp}, {0}};
 static const struct argp check_argp = {
     .options = check_option,
     .parser = parse_check,
@@ -56,11 +47,9 @@ static const struct argp check_argp = {
 status command_check(int argc, char **argv, failure *why)
 {
     check_input input = {0};
-    error_t error = argp_parse(&check_argp, argc, argv, 0, NULL, &input);
-    if (error)
-        return fail(why, STATUS_ERROR, "%s", strerror(error));
-    status result = plan_command(input.scene_path, input.set.count, input.set.value, input.device.device, input.device.kernels, input.json,
-                                 input.probe, why);
-    set_options_free(&input.set);
+    TRY(command_parse(&check_argp, 0, argc, argv, &input, why));
+    const run_options *run = &input.scene.run;
+    status result = plan_command(run->scene_path, run->set_count, run->sets, run->device, run->kernels, input.json, input.probe, why);
+    scene_input_free(&input.scene);
     return result;
 }

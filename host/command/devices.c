@@ -101,9 +101,7 @@ static status print_json(const device_info *list, int count, int used, failure *
 status command_devices(int argc, char **argv, failure *why)
 {
     bool json = false;
-    error_t error = argp_parse(&devices_argp, argc, argv, 0, NULL, &json);
-    if (error)
-        return fail(why, STATUS_ERROR, "%s", strerror(error));
+    TRY(command_parse(&devices_argp, 0, argc, argv, &json, why));
     device_info *list;
     int count, used;
     TRY(device_list(&list, &count, why));

@@ -10,9 +10,7 @@ static const struct argp reference_argp = {.doc = "Print the reference of all sc
 
 status command_reference(int argc, char **argv, failure *why)
 {
-    error_t error = argp_parse(&reference_argp, argc, argv, 0, NULL, NULL);
-    if (error)
-        return fail(why, STATUS_ERROR, "%s", strerror(error));
+    TRY(command_parse(&reference_argp, 0, argc, argv, NULL, why));
     char *text = scene_reference();
     fputs(text, stdout);
     free(text);

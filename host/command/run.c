@@ -1,72 +1,39 @@
 /* clast run, clast resume */
-#include "../run.h"
-#include "../scene.h"
 #include "../sweep.h"
 #include "command.h"
-
-#include <errno.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { KEY_SWEEP = 256, KEY_PRECISION, KEY_JOBS };
 
 typedef struct run_input {
-    run_options options;
+    scene_input scene;
     set_options sweep;
     int jobs;
-    device_options device;
-    set_options set;
 } run_input;
-
-static void check_precision(const struct argp_state *state, const char *precision)
-{
-    enum precision found;
-    if (!precision_find(precision, &found))
-        option_refuse(state, "--precision: `%s` is none of auto, double, mixed", precision);
-}
-
-static error_t add_sweep(const struct argp_state *state, set_options *sweep, char *argument)
-{
-    if (!strchr(argument, '='))
-        option_refuse(state, "--sweep %s: write PATH=A,B,C", argument);
-    char **value = realloc(sweep->value, ((size_t)sweep->count + 1) * sizeof *value);
-    if (!value)
-        return ENOMEM;
-    sweep->value = value;
-    sweep->value[sweep->count++] = argument;
-    return 0;
-}
 
 static error_t parse_run(int key, char *argument, struct argp_state *state)
 {
     run_input *input = state->input;
+    run_options *options = &input->scene.run;
     switch (key) {
     case ARGP_KEY_INIT:
-        state->child_inputs[0] = &input->device;
-        state->child_inputs[1] = &input->set;
+        state->child_inputs[0] = &input->scene;
         return 0;
     case 'o':
-        input->options.out = argument;
+        options->out = argument;
         return 0;
     case 'q':
-        input->options.quiet = true;
+        options->quiet = true;
         return 0;
     case KEY_PRECISION:
-        check_precision(state, argument);
-        input->options.precision = argument;
+        options->precision = option_precision(state, argument);
         return 0;
     case KEY_SWEEP:
-        return add_sweep(state, &input->sweep, argument);
+        return option_add(state, "--sweep", "A,B,C", &input->sweep, argument);
     case KEY_JOBS:
         input->jobs = (int)option_count(state, "--jobs", argument, 1, 10000);
         return 0;
-    case ARGP_KEY_ARG:
-        option_only(state, &input->options.scene_path, argument);
-        return 0;
     case ARGP_KEY_END:
-        if (!input->options.scene_path)
-            option_refuse(state, "which scene? Name a SCENE.yaml");
-        if (!input->options.out)
+        if (!options->out)
             option_refuse(state, "where to? Name the results file: --out RESULT.h5 (with --sweep a folder)");
         if (input->jobs > 0 && input->sweep.count == 0)
             option_refuse(state, "--jobs: there is no --sweep to spread over them");
@@ -76,9 +43,14 @@ static error_t parse_run(int key, char *argument, struct argp_state *state)
     }
 }
 
+typedef struct resume_input {
+    run_options options;
+    device_options device;
+} resume_input;
+
 static error_t parse_resume(int key, char *argument, struct argp_state *state)
 {
-    run_input *input = state->input;
+    resume_input *input = state->input;
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &input->device;
@@ -104,12 +76,13 @@ static error_t parse_resume(int key, char *argument, struct argp_state *state)
 static const struct argp_option run_option[] = {
     {"out", 'o', "RESULT.h5", 0, "Results file; an XDMF file and the checkpoint get the same stem", 0},
     {"precision", KEY_PRECISION, "P", 0, "auto, double or mixed, instead of the scene's", 0},
-    {"sweep", KEY_SWEEP, "PATH=A,B,C", 0, "Run once for each value, into the folder --out, with one table (sweep.csv); repeated: every combination", 0},
+    {"sweep", KEY_SWEEP, "PATH=A,B,C", 0,
+     "Run once for each value, into the folder --out, with one table (sweep.csv); repeated: every combination", 0},
     {"jobs", KEY_JOBS, "N", 0, "Runs of a sweep at a time (default: one a core where beds are small)", 0},
     {"quiet", 'q', NULL, 0, "Show no progress", 0},
     {0},
 };
-static const struct argp_child run_children[] = {{.argp = &device_options_argp}, {.argp = &set_options_argp}, {0}};
+static const struct argp_child run_children[] = {{.argp = &scene_input_argp}, {0}};
 static const struct argp run_argp = {
     .options = run_option,
     .parser = parse_run,
@@ -136,35 +109,29 @@ static const struct argp resume_argp = {
     .children = resume_children,
 };
 
-static status start(run_input *input, status (*run)(const run_options *options, failure *why), failure *why)
-{
-    input->options.device = input->device.device;
-    input->options.kernels = input->device.kernels;
-    input->options.set_count = input->set.count;
-    input->options.sets = input->set.value;
-    status result;
-    if (input->sweep.count > 0) {
-        const sweep_options sweep = {input->options, input->sweep.count, input->sweep.value, input->jobs};
-        result = sweep_run(&sweep, why);
-    } else {
-        run_catch_signals();
-        result = run(&input->options, why);
-    }
-    set_options_free(&input->sweep);
-    set_options_free(&input->set);
-    return result;
-}
-
 status command_run(int argc, char **argv, failure *why)
 {
     run_input input = {0};
-    error_t error = argp_parse(&run_argp, argc, argv, 0, NULL, &input);
-    return error ? fail(why, STATUS_ERROR, "%s", strerror(error)) : start(&input, run_scene, why);
+    status result;
+    TRY(command_parse(&run_argp, 0, argc, argv, &input, why));
+    if (input.sweep.count > 0) {
+        const sweep_options sweep = {input.scene.run, input.sweep.count, input.sweep.value, input.jobs};
+        result = sweep_run(&sweep, why);
+    } else {
+        run_catch_signals();
+        result = run_scene(&input.scene.run, why);
+    }
+    set_options_free(&input.sweep);
+    scene_input_free(&input.scene);
+    return result;
 }
 
 status command_resume(int argc, char **argv, failure *why)
 {
-    run_input input = {0};
-    error_t error = argp_parse(&resume_argp, argc, argv, 0, NULL, &input);
-    return error ? fail(why, STATUS_ERROR, "%s", strerror(error)) : start(&input, run_resume, why);
+    resume_input input = {0};
+    TRY(command_parse(&resume_argp, 0, argc, argv, &input, why));
+    input.options.device = input.device.device;
+    input.options.kernels = input.device.kernels;
+    run_catch_signals();
+    return run_resume(&input.options, why);
 }

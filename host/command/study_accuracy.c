@@ -2,28 +2,15 @@
 #include "../study.h"
 #include "command.h"
 
-#include <errno.h>
+#include <float.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { KEY_TOLERANCE = 256, KEY_CHOICES, KEY_LEVELS, KEY_BUDGET, KEY_JOBS, KEY_REPEATS };
 
 typedef struct accuracy_input {
     study_options options;
-    device_options device;
-    set_options set;
+    scene_input scene;
 } accuracy_input;
-
-static double positive(const struct argp_state *state, const char *name, const char *text)
-{
-    char *end;
-    double value = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(value) || value <= 0.0)
-        option_refuse(state, "%s: `%s` is not a number above 0", name, text);
-    return value;
-}
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
@@ -31,20 +18,19 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     study_options *o = &input->options;
     switch (key) {
     case ARGP_KEY_INIT:
-        state->child_inputs[0] = &input->device;
-        state->child_inputs[1] = &input->set;
+        state->child_inputs[0] = &input->scene;
         return 0;
     case 'o':
-        o->run.out = argument;
+        input->scene.run.out = argument;
         return 0;
     case 'q':
-        o->run.quiet = true;
+        input->scene.run.quiet = true;
         return 0;
     case KEY_TOLERANCE:
-        o->tolerance = positive(state, "--tolerance", argument);
+        o->tolerance = option_number(state, "--tolerance", argument, DBL_MIN, INFINITY);
         return 0;
     case KEY_BUDGET:
-        o->budget_s = positive(state, "--budget", argument);
+        o->budget_s = option_number(state, "--budget", argument, DBL_MIN, INFINITY);
         return 0;
     case KEY_CHOICES:
         o->choices = argument;
@@ -58,13 +44,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_REPEATS:
         o->repeats = (int)option_count(state, "--repeats", argument, 1, STUDY_REPEATS_MAX);
         return 0;
-    case ARGP_KEY_ARG:
-        option_only(state, &o->run.scene_path, argument);
-        return 0;
     case ARGP_KEY_END:
-        if (!o->run.scene_path)
-            option_refuse(state, "which scene? Name a SCENE.yaml");
-        if (!o->run.out)
+        if (!input->scene.run.out)
             option_refuse(state, "where to? Name a folder: --out DIR");
         return 0;
     default:
@@ -77,19 +58,13 @@ static char *help_text(int key, const char *text, void *input)
     (void)input;
     if (key != ARGP_KEY_HELP_POST_DOC)
         return (char *)text;
-    char *list = NULL;
-    size_t size;
-    FILE *stream = open_memstream(&list, &size);
-    if (!stream)
-        return NULL;
-    fprintf(stream, "Choices (the step is always one):\n");
-    for (int k = 0; study_choice_names[k]; k++)
-        fprintf(stream, "  %-10s %s\n", study_choice_names[k], study_choice_docs[k]);
-    fprintf(stream, "\nThe scene names its answers under `study`, where `clast reference` lists its other keys. The folder gets "
-                    "accuracy.csv, accuracy.h5 and the"
-                    " work-precision diagram as accuracy.png and accuracy.svg.");
-    fclose(stream);
-    return list;
+    int count = 0;
+    while (study_choice_names[count])
+        count++;
+    return command_list(
+        "Choices (the step is always one)", count, study_choice_names, study_choice_docs,
+        "The scene names its answers under `study`, where `clast reference` lists its other keys. The folder gets accuracy.csv, accuracy.h5"
+        " and the work-precision diagram as accuracy.png and accuracy.svg.");
 }
 
 static const struct argp_option option[] = {
@@ -103,7 +78,7 @@ static const struct argp_option option[] = {
     {"quiet", 'q', NULL, 0, "Show no progress", 0},
     {0},
 };
-static const struct argp_child children[] = {{.argp = &device_options_argp}, {.argp = &set_options_argp}, {0}};
+static const struct argp_child children[] = {{.argp = &scene_input_argp}, {0}};
 static const struct argp accuracy_argp = {
     .options = option,
     .parser = parse,
@@ -116,14 +91,9 @@ static const struct argp accuracy_argp = {
 status command_study_accuracy(int argc, char **argv, failure *why)
 {
     accuracy_input input = {.options = {.tolerance = NAN, .budget_s = 150.0, .repeats = 5}};
-    error_t error = argp_parse(&accuracy_argp, argc, argv, 0, NULL, &input);
-    if (error)
-        return fail(why, STATUS_ERROR, "%s", strerror(error));
-    input.options.run.device = input.device.device;
-    input.options.run.kernels = input.device.kernels;
-    input.options.run.set_count = input.set.count;
-    input.options.run.sets = input.set.value;
+    TRY(command_parse(&accuracy_argp, 0, argc, argv, &input, why));
+    input.options.run = input.scene.run;
     status result = study_accuracy(&input.options, why);
-    set_options_free(&input.set);
+    scene_input_free(&input.scene);
     return result;
 }

@@ -1,49 +1,26 @@
 /* clast study stability */
 #include "../study_stability.h"
-#include "../scene.h"
 #include "command.h"
-
-#include <stdlib.h>
-#include <string.h>
 
 enum { KEY_TOLERANCE = 256, KEY_STEPS, KEY_STAGE, KEY_JSON, KEY_PRECISION };
 
 typedef struct stability_input {
     stability_options options;
-    device_options device;
-    set_options set;
+    scene_input scene;
 } stability_input;
-
-static double tolerance_of(const struct argp_state *state, const char *text)
-{
-    char *end;
-    double value = strtod(text, &end);
-    if (end == text || *end != '\0' || !(value >= 1e-3 && value <= 1.0))
-        option_refuse(state, "--tolerance: `%s` is not a number from 0.001 to 1", text);
-    return value;
-}
-
-static const char *precision_of(const struct argp_state *state, const char *text)
-{
-    enum precision found;
-    if (!precision_find(text, &found))
-        option_refuse(state, "--precision: `%s` is none of auto, double, mixed", text);
-    return text;
-}
 
 static error_t parse_stability(int key, char *argument, struct argp_state *state)
 {
     stability_input *input = state->input;
     switch (key) {
     case ARGP_KEY_INIT:
-        state->child_inputs[0] = &input->device;
-        state->child_inputs[1] = &input->set;
+        state->child_inputs[0] = &input->scene;
         return 0;
     case 'o':
-        input->options.out = argument;
+        input->scene.run.out = argument;
         return 0;
     case KEY_TOLERANCE:
-        input->options.tolerance = tolerance_of(state, argument);
+        input->options.tolerance = option_number(state, "--tolerance", argument, 1e-3, 1.0);
         return 0;
     case KEY_STEPS:
         input->options.steps = option_count(state, "--steps", argument, 100, 1000000000);
@@ -55,14 +32,7 @@ static error_t parse_stability(int key, char *argument, struct argp_state *state
         input->options.json = true;
         return 0;
     case KEY_PRECISION:
-        input->options.precision = precision_of(state, argument);
-        return 0;
-    case ARGP_KEY_ARG:
-        option_only(state, &input->options.scene_path, argument);
-        return 0;
-    case ARGP_KEY_END:
-        if (!input->options.scene_path)
-            option_refuse(state, "which scene? Name a SCENE.yaml");
+        input->scene.run.precision = option_precision(state, argument);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -78,7 +48,7 @@ static const struct argp_option stability_option[] = {
     {"precision", KEY_PRECISION, "P", 0, "auto, double or mixed, instead of the scene's", 0},
     {0},
 };
-static const struct argp_child stability_children[] = {{.argp = &device_options_argp}, {.argp = &set_options_argp}, {0}};
+static const struct argp_child stability_children[] = {{.argp = &scene_input_argp}, {0}};
 static const struct argp stability_argp = {
     .options = stability_option,
     .parser = parse_stability,
@@ -93,14 +63,9 @@ static const struct argp stability_argp = {
 status command_study_stability(int argc, char **argv, failure *why)
 {
     stability_input input = {.options = {.steps = 10000, .tolerance = 0.05}};
-    error_t error = argp_parse(&stability_argp, argc, argv, 0, NULL, &input);
-    if (error)
-        return fail(why, STATUS_ERROR, "%s", strerror(error));
-    input.options.device = input.device.device;
-    input.options.kernels = input.device.kernels;
-    input.options.set_count = input.set.count;
-    input.options.sets = input.set.value;
+    TRY(command_parse(&stability_argp, 0, argc, argv, &input, why));
+    input.options.run = input.scene.run;
     status result = study_stability(&input.options, why);
-    set_options_free(&input.set);
+    scene_input_free(&input.scene);
     return result;
 }
