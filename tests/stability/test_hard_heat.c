@@ -162,7 +162,7 @@ static double force_of_wall(physics_case *c, int wall, double sum[3])
     return sizes;
 }
 
-static void swells(physics_case *c, const char *name)
+static void swells(physics_case *c, const char *name, double motion)
 {
     double e[LEDGER_TERMS], overlap = 0.0, energy = hard_energy(c);
     while (c->sim->time < (hard_long() ? 0.1 : 0.012)) {
@@ -174,7 +174,7 @@ static void swells(physics_case *c, const char *name)
     double moves = sums.kinetic + sums.rotational, elastic = case_contact_sums(c).elastic;
     double lost = e[NORMAL] + e[TANGENTIAL] + e[ROLLING], fed = e[EXPANSION] + e[WALLS];
     hard_margin(c, name, "largest overlap over the smaller radius", overlap, 0.3);
-    hard_margin(c, name, "motion at the end over what is stored", moves / elastic, hard_long() ? 1e-12 : 1e-3);
+    hard_margin(c, name, "motion at the end over what is stored", moves / elastic, motion);
     hard_margin(c, name, "energy that is missing over the work of expansion", fabs(hard_energy(c) - energy + lost - fed) / e[EXPANSION],
                 0.02);
 }
@@ -182,7 +182,7 @@ static void swells(physics_case *c, const char *name)
 static void jam_box(const char *precision)
 {
     physics_case c = hard_open("jam_box", precision, NULL);
-    swells(&c, "swelling in a closed box");
+    swells(&c, "swelling in a closed box", 1e-12);
     double *x = case_field(&c, "position"), *r = case_field(&c, "radius"), deep = 0.0, force[3], sizes = force_of_wall(&c, 0, force);
     for (int64_t n = 0; n < c.bed.count; n++)
         for (int a = 0; a < 3; a++)
@@ -199,21 +199,21 @@ static void jam_box(const char *precision)
 static void jam_periodic(const char *precision)
 {
     physics_case c = hard_open("jam_periodic", precision, NULL);
-    swells(&c, "swelling in a periodic box");
+    swells(&c, "swelling in a periodic box", 1e-12);
     particle_sums sums = case_sums(&c);
     double most = 0.0;
     for (int a = 0; a < 3; a++)
         most = fmax(most, fabs(sums.momentum[a]));
-    /* of grains that move by a tenth of their size in the time that they swell */
+    /* of grains that move by their size in the time that they swell; rounding adds up over all that jammed contacts exchange, 1e5 times as much */
     hard_margin(&c, "swelling in a periodic box", "momentum over that of 1 mm in 5 ms", most / (sums.mass * 0.2),
-                is_mixed(precision) ? 1e-5 : 1e-12);
+                is_mixed(precision) ? 1e-4 : 1e-12);
     case_close(&c);
 }
 
 static void jam_servo(const char *precision)
 {
     physics_case c = hard_open("jam_servo", precision, NULL);
-    swells(&c, "swelling under a lid");
+    swells(&c, "swelling under a lid", 1e-3); /* grains that bear nothing fly on, and there is no gravity that ends it */
     double lid[3];
     force_of_wall(&c, 1, lid);
     hard_margin(&c, "swelling under a lid", "force on the lid from its pressure, share", fabs(fabs(lid[2]) / (2.0e4 * 6.4e-5) - 1.0),

@@ -115,7 +115,7 @@ class Command(unittest.TestCase):
             (["bench", "bed", "--particles", "1.5"], "`1.5`"),
             (["bench", "bed", "--steps", "1e99"], "`1e99`"),
             (["study", "accuracy", "a.yaml"], "--out"),
-            (["study"], "stability"),
+            (["study"], "no study given"),
             (["study", "speed", "a.yaml"], "`speed`"),
         ]
         for arguments, text in one_line:
