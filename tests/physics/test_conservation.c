@@ -107,12 +107,90 @@ static void test_drift_with_radius(void **state)
     NEAR(drifted, expected, fmax(1e-8 * fabs(expected), within(0.0, LAW) * l));
 }
 
+/* ---- large and small ---- */
+
+#define SHELL  150
+#define LAYERS 3
+#define BOULDER 50.0
+
+/* Fibonacci's points on a sphere; layers one behind the other, so that the outer grains run into those that come back. */
+static text boulder_and_grains(double *linear, double *angular)
+{
+    text t = cluster_head("  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin}\n  - {slot: rolling, law: elastic_plastic}\n", 0.1);
+    const double none[3] = {0, 0, 0}, spin[3] = {20, 10, -30}, big = BOULDER * radius, m = sphere_mass(density, radius), speed = 0.5;
+    put(&t, "particles:\n  - name: p\n    material: m\n    generator: list\n    items:\n");
+    put_grain(&t, big, none, none, spin);
+    *linear = SHELL * LAYERS * m * speed;
+    *angular = *linear * 1.2 * big + 0.4 * sphere_mass(density, big) * big * big * size(spin);
+    for (int k = 0; k < SHELL * LAYERS; k++) {
+        double z = 1.0 - (2.0 * (k % SHELL) + 1.0) / SHELL, turn = PI * (3.0 - sqrt(5.0)) * (k % SHELL), wide = sqrt(1.0 - z * z);
+        double way[3] = {wide * cos(turn), wide * sin(turn), z}, x[3], v[3];
+        for (int c = 0; c < 3; c++) {
+            x[c] = (big + (1.1 + 2.2 * (k / SHELL)) * radius) * way[c];
+            v[c] = -speed * way[c];
+        }
+        put_grain(&t, radius, x, v, none);
+    }
+    return t;
+}
+
+/* Pairs that overlap, by trying all. */
+static int64_t overlapping(physics_case *c, int64_t *of_boulder)
+{
+    double *x = case_field(c, "position"), *r = case_field(c, "radius");
+    int64_t count = 0, n = SHELL * LAYERS + 1;
+    *of_boulder = 0;
+    for (int64_t i = 0; i < n; i++)
+        for (int64_t j = i + 1; j < n; j++) {
+            double d[3] = {x[3 * i] - x[3 * j], x[3 * i + 1] - x[3 * j + 1], x[3 * i + 2] - x[3 * j + 2]};
+            bool touch = size(d) < r[i] + r[j];
+            count += touch;
+            *of_boulder += touch && i == 0;
+        }
+    free(x);
+    free(r);
+    return count;
+}
+
+/* Grains from all sides strike a spinning boulder of fifty times their radius and each other: no contact is missed, and momentum and angular
+ * momentum are kept. */
+static void test_boulder(void **state)
+{
+    (void)state;
+    double linear, angular;
+    text t = boulder_and_grains(&linear, &angular);
+    physics_case c = case_open(&t);
+    particle_sums before = case_sums(&c);
+    int64_t most = 0, among_grains = 0, of_boulder, count;
+    for (int part = 0; part < 60; part++) {
+        case_run(&c, 15, 1.0e-5);
+        int64_t expected = overlapping(&c, &of_boulder), found = 0;
+        live_contact *live = case_contacts(&c, &count);
+        for (int64_t k = 0; k < count; k++)
+            found += live[k].overlap > 0.0;
+        free(live);
+        assert_int_equal(found, expected);
+        most = of_boulder > most ? of_boulder : most;
+        among_grains += expected - of_boulder;
+        particle_sums now = case_sums(&c);
+        for (int k = 0; k < 3; k++) {
+            NEAR(now.momentum[k], before.momentum[k], within(1e-14, LAW) * linear);
+            NEAR(now.angular[k], before.angular[k], within(1e-13, 2.0 * LAW) * angular);
+        }
+    }
+    assert_true(most > SHELL / 2);
+    assert_true(among_grains > SHELL / 2);
+    assert_true(case_sums(&c).kinetic < before.kinetic);
+    case_close(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kept_with_history),
         cmocka_unit_test(test_kept_by_the_other_laws),
         cmocka_unit_test(test_drift_with_radius),
+        cmocka_unit_test(test_boulder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
