@@ -22,7 +22,9 @@ typedef struct bench_figures {
     double bytes_per_particle, contacts_per_particle, records_per_particle, bonded; /* bonded: share of the contacts */
     double pair_s, particle_s; /* device time of the two stages in a step */
     double kinetic_j;
-    int launches, chunk_records, force_records;
+    const char *form; /* how steps are taken */
+    int launches;     /* of a step; 0: one of a batch */
+    int streams, chunk_records, force_records;
     char device[1024];
 } bench_figures;
 
@@ -159,7 +161,9 @@ static status measure(simulation *sim, const bench_options *options, bench_figur
     TRY(observe_contact_sums(sim, &contacts, why));
     out->particles = sim->count;
     out->kinetic_j = sums.kinetic;
-    out->launches = sim->plan.count;
+    out->launches = step_loop_launches(sim);
+    out->form = step_loop_name(sim);
+    out->streams = step_loop_members(sim);
     out->chunk_records = sim->plan.chunk_records;
     out->force_records = sim->plan.force_records;
     out->bytes_per_particle = (double)sim->bytes / (double)sim->count;
@@ -200,10 +204,13 @@ static void print_figures(const bench_figures *f, const bench_options *options)
     printf("  %-28s%.4g ns a grain and step\n", "pair stage", 1e9 * f->pair_s / n);
     printf("  %-28s%.4g ns a grain and step\n", "particle stage", 1e9 * f->particle_s / n);
     if (f->chunk_records > 0)
-        printf("  %-28s%d, in chunks of %d records, forces in %s%d\n", "launches a step", f->launches, f->chunk_records,
+        printf("  %-28s%d of chunks of %d records, forces in %s%d\n", "streams", f->streams, f->chunk_records,
                f->force_records > 0 ? "places for " : "all of ", f->force_records > 0 ? f->force_records : (int)(f->records_per_particle * n));
+    printf("  %-28s%s, ", "steps taken by", f->form);
+    if (f->launches > 0)
+        printf("%d launches each\n", f->launches);
     else
-        printf("  %-28s%d\n", "launches a step", f->launches);
+        printf("one launch a batch\n");
     printf("  %-28s%.4g a grain\n", "device memory, bytes", f->bytes_per_particle);
     printf("  %-28s%.3f a grain, %.3f records in the table\n", "contacts with others", f->contacts_per_particle, f->records_per_particle);
     if (options->effects & BED_BONDS)
@@ -215,12 +222,12 @@ static status write_json(const bench_figures *f, const bench_options *options, f
 {
     char effects[128];
     bench_name_effects(options->effects, effects, sizeof effects);
-    json_t *root = json_pack("{s:s, s:s, s:I, s:I, s:f, s:b, s:s, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:i, s:i, s:i, s:f}", "device", f->device, "precision", options->mixed ? "mixed" : "double",
+    json_t *root = json_pack("{s:s, s:s, s:I, s:I, s:f, s:b, s:s, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:s, s:i, s:i, s:i, s:f}", "device", f->device, "precision", options->mixed ? "mixed" : "double",
                              "particles", (json_int_t)f->particles, "steps", (json_int_t)f->steps, "step_s", BENCH_STEP_S, "rolling",
                              (int)(options->effects & BED_ROLLING), "effects", effects, "wall_s", f->wall_s, "particle_steps_per_s", f->particle_steps_per_s, "bytes_per_particle",
                              f->bytes_per_particle, "rebuilds", (json_int_t)f->rebuilds, "rebuild_s", f->rebuild_s, "pair_stage_s",
                              f->pair_s, "particle_stage_s", f->particle_s, "contacts_per_particle", f->contacts_per_particle,
-                             "records_per_particle", f->records_per_particle, "kinetic_energy_j", f->kinetic_j, "launches_per_step", f->launches, "chunk_records",
+                             "records_per_particle", f->records_per_particle, "kinetic_energy_j", f->kinetic_j, "step_form", f->form, "launches_per_step", f->launches, "chunk_records",
                              f->chunk_records, "force_records", f->force_records, "bonded_share", f->bonded);
     FILE *file = root ? fopen(options->json_path, "w") : NULL;
     bool whole = file && json_dumpf(root, file, JSON_INDENT(2)) == 0 && fputc('\n', file) != EOF;

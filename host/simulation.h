@@ -288,6 +288,10 @@ int step_loop_items(const simulation *sim);
 /* After every table. */
 status step_loop_bind(simulation *sim, failure *why);
 status step_loop_enqueue(simulation *sim, int steps, failure *why);
+/* How most batches of late were taken: "team", "phases", "one group", or "two kernels". */
+const char *step_loop_name(const simulation *sim);
+/* Launches of a step so taken; 0: one of a batch. */
+int step_loop_launches(const simulation *sim);
 /* After a batch of so many steps, which took so long. */
 void step_loop_note(simulation *sim, int steps, double seconds);
 void step_loop_free(simulation *sim);

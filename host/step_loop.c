@@ -95,6 +95,20 @@ static loop_manner choose_manner(const simulation *sim)
     return best;
 }
 
+const char *step_loop_name(const simulation *sim)
+{
+    static const char *const name[LOOP_MANNERS] = {"phases", "team", "one group"};
+    loop_manner fixed = fixed_manner(sim);
+    return step_loop_now(sim) ? name[fixed != LOOP_MANNERS ? fixed : fastest(&sim->loop)] : "two kernels";
+}
+
+int step_loop_launches(const simulation *sim)
+{
+    if (!step_loop_now(sim))
+        return sim->plan.count;
+    return strcmp(step_loop_name(sim), "phases") == 0 ? sim->plan.phases.count : 0;
+}
+
 void step_loop_note(simulation *sim, int steps, double seconds)
 {
     step_loop *loop = &sim->loop;
