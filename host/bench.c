@@ -255,6 +255,7 @@ static status run_bench(const bench_options *options, device *device, bench_figu
     TRY(settled_bed_make(options->particles, options->effects, device, options->kernels, &of, why));
     status result = options->export_path ? export_bed(&of, options->export_path, why) : STATUS_OK;
     of.scene->precision = options->mixed ? PRECISION_MIXED : PRECISION_DOUBLE;
+    of.scene->table.step_form = options->form;
     if (result == STATUS_OK)
         result = simulation_create(of.scene, &of.bed, device, options->kernels, &sim, why);
     if (result == STATUS_OK)

@@ -1,6 +1,7 @@
 /* Speed and memory of a settled bed: the output of `clast bench bed`. */
 #ifndef CLAST_HOST_BENCH_H
 #define CLAST_HOST_BENCH_H
+#include "scene.h"
 #include "status.h"
 
 #include <stddef.h>
@@ -11,6 +12,7 @@ typedef struct bench_options {
     int64_t steps;           /* that are timed; 0: as many as suit the number of particles */
     unsigned effects;        /* BED_* (host/settled_bed.h), on top of contact and friction */
     bool mixed;              /* in mixed precision */
+    step_form form;          /* of the steps of `bed` */
     const char *export_path; /* the bed as CSV, or NULL */
     const char *json_path;   /* the figures as JSON, or NULL */
     const char *csv_path;    /* the same as CSV, or NULL; not of a bed */

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { KEY_PRECISION = 256, KEY_ROLLING, KEY_EFFECTS, KEY_EXPORT, KEY_JSON, KEY_CSV, KEY_SECONDS, KEY_ONLY, KEY_SCENES, KEY_FORGET };
+enum { KEY_PRECISION = 256, KEY_ROLLING, KEY_EFFECTS, KEY_EXPORT, KEY_JSON, KEY_CSV, KEY_SECONDS, KEY_ONLY, KEY_SCENES, KEY_FORGET, KEY_STEP_FORM };
 
 /* A benchmark, and the options that it takes beside device, kernels and number of particles. */
 typedef struct benchmark {
@@ -36,6 +36,17 @@ typedef struct bench_input {
     bench_options options;
     device_options device;
 } bench_input;
+
+/* In the order of step_form. */
+static step_form read_form(struct argp_state *state, const char *word)
+{
+    static const char *const forms[] = {"auto", "two_kernels", "one_group", "phases", "team"};
+    for (size_t f = 0; f < sizeof forms / sizeof *forms; f++)
+        if (strcmp(word, forms[f]) == 0)
+            return (step_form)f;
+    option_refuse(state, "--step-form: `%s` is none of auto, two_kernels, one_group, phases, team", word);
+    return STEP_AUTO;
+}
 
 static void read_effects_option(const struct argp_state *state, const char *argument, unsigned *effects)
 {
@@ -68,6 +79,9 @@ static error_t parse_bench(int key, char *argument, struct argp_state *state)
     case KEY_PRECISION:
         precision_find(option_precision(state, argument), &found);
         input->options.mixed = found == PRECISION_MIXED;
+        return 0;
+    case KEY_STEP_FORM:
+        input->options.form = read_form(state, argument);
         return 0;
     case KEY_EFFECTS:
         read_effects_option(state, argument, &input->options.effects);
@@ -111,6 +125,7 @@ static const struct argp_option bench_option[] = {
     {"particles", 'n', "N", 0, "Number of particles, as in 1e5 (100000)", 0},
     {"steps", 'S', "STEPS", 0, "Steps that are timed, after 200 of warm-up", 0},
     {"precision", KEY_PRECISION, "P", 0, "auto, double or mixed", 0},
+    {"step-form", KEY_STEP_FORM, "FORM", 0, "How `bed` takes its steps: auto, two_kernels, one_group, phases or team, as in contact_table.step_form", 0},
     {"rolling", KEY_ROLLING, NULL, 0, "With rolling resistance", 0},
     {"effects", KEY_EFFECTS, "A,B,...", 0, "With these on top of contact and friction, of rolling, conduction, convection, radiation, bonds", 0},
     {"export", KEY_EXPORT, "FILE.csv", 0, "Write the bed as it is before the warm-up", 0},
