@@ -207,6 +207,24 @@ class SceneFile(unittest.TestCase):
         self.assertEqual(done.returncode, OK, done.stderr)
         return json.loads(done.stdout)
 
+    def test_beam_that_misses(self):
+        """A beam that meets no grain in the whole run is named in a warning; one that does is not."""
+        scene = """
+effects: [{slot: source, law: laser, name: spot, profile: top_hat, diameter_m: 0.01, direction: [0, 0, -1], attenuation_1_m: 2000,
+           path: {time_s: [0], position_m: [[PLACE, 0, 0]], power_w: [10]}}]
+materials: [{name: m, density_kg_m3: 1000, specific_heat_j_kgk: 100, absorptance: 1}]
+particles: [{name: g, material: m, generator: list, temperature_k: 300, items: [{position_m: [0, 0, 0], radius_m: 1.0e-3}]}]
+stages: [{until: {steps: 10}, step_s: 1.0e-3}]
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            for place, missed in (("0.1", True), ("0", False)):
+                path = os.path.join(folder, "beam.yaml")
+                with open(path, "w") as file:
+                    file.write(scene.replace("PLACE", place))
+                done = subprocess.run([CLAST, "run", path, "--out", os.path.join(folder, "beam.h5")], capture_output=True, text=True)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual("warning: the source `spot` has met no grain" in done.stderr, missed, done.stderr)
+
     def test_plan(self):
         plan = self.plan("--probe")
         self.assertEqual(plan["particles"], 1)
