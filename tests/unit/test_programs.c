@@ -294,7 +294,7 @@ static void check_arguments(cl_program program, const live_laws *live, const cha
             fail_msg("%s, program with%s: argument %d is %s, not %s", kernel_name, what, a, name, expected);
     }
     bool stage = strstr(kernel_name, "_stage") != NULL;
-    assert_int_equal(first, loop ? 5 : stage ? 2 : 1);
+    assert_int_equal(first, loop ? 8 : stage ? 2 : 1);
     clReleaseKernel(kernel);
 }
 
