@@ -110,6 +110,10 @@ static int files_of(const live_laws *live, const char **files)
     for (int f = 2; f < tables; f++) /* the first two, precision and periodic box, are in both */
         files[count++] = table[f];
     files[count++] = "stage/step_loop.cl";
+    live_laws moving = *live; /* these are of a frozen stage, which has all files but that of stages that move */
+    moving.frozen = false;
+    if (live->frozen && live_changes_stiffness(&moving))
+        files[count++] = "stage/stiffness.cl";
     return count;
 }
 
