@@ -91,6 +91,12 @@ static status start_bed(tune_bench *t, int64_t particles, const tuning *with, st
     return STATUS_OK;
 }
 
+/* What the run of a bed of some size comes to (host/step_loop.c). */
+static step_form form_of_large_beds(const tune_bench *b)
+{
+    return b->device.info.cpu && b->device.info.compute_units > 1 ? STEP_TEAM : STEP_TWO_KERNELS;
+}
+
 /* ---- one choice ---- */
 
 static double median_of(const double *s, int count)
@@ -168,7 +174,7 @@ static status try_setting(tune_bench *b, trial *t, int setting, failure *why)
         int c = (n + setting * 2) % t->count;
         tuning with = b->found;
         set_choice(&with, t->name, t->candidate[c].value);
-        result = start_bed(b, t->particles, &with, STEP_TWO_KERNELS, &beds[c], why);
+        result = start_bed(b, t->particles, &with, form_of_large_beds(b), &beds[c], why);
     }
     if (result == STATUS_OK)
         result = run_rounds(t, setting, beds, why);
@@ -221,7 +227,7 @@ static status try_batches(tune_bench *b, failure *why)
 
 static status try_forms(tune_bench *b, trial *t, int setting, double *records, failure *why)
 {
-    static const step_form forms[] = {STEP_TWO_KERNELS, STEP_ONE_GROUP};
+    const step_form forms[] = {form_of_large_beds(b), STEP_ONE_GROUP};
     open_bed beds[2] = {{.sim = NULL}};
     status result = STATUS_OK;
     for (int n = 0; n < 2 && result == STATUS_OK; n++) {

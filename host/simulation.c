@@ -629,7 +629,7 @@ status simulation_count_leavers(simulation *sim, int64_t kept, failure *why)
  * the side of few tables, since it is the fast and loose beds that need many. */
 static double best_skin(const simulation *sim, double used)
 {
-    double best = fmin(fmax(sqrt(17.0 * used * sim->mean_radius), 0.02 * sim->mean_radius), 1.4 * sim->mean_radius);
+    double best = fmin(fmax(sqrt(24.0 * used * sim->mean_radius), 0.02 * sim->mean_radius), 1.4 * sim->mean_radius);
     const domain *d = &sim->scene->domain;
     for (int c = 0; d->given && c < 3; c++)
         if (d->periodic[c])

@@ -113,10 +113,14 @@ static status find_last_records(simulation *sim, planning *p, failure *why)
 {
     contact_table *t = &sim->table;
     cl_kernel kernel = launch_kernel(sim, "table_last_records");
-    TRY(launch_set(kernel, "table_last_records", why, "mmmmii", t->slot_offset[t->now], t->slots[t->now], t->work[0], t->work[1], t->wall_base, p->blocks));
+    TRY(launch_set(kernel, "table_last_records", why, "mmmii", t->slot_offset[t->now], t->slots[t->now], t->work[0], t->wall_base, p->blocks));
     TRY(launch_run(sim, kernel, "table_last_records", p->blocks, sim->block, why));
-    TRY(store_read(sim, t->work[0], 0, 4 * (uint64_t)p->blocks, p->first, why));
-    return store_read(sim, t->work[1], 0, 4 * (uint64_t)p->blocks, p->last, why);
+    TRY(store_read(sim, t->work[0], 0, 8 * (uint64_t)p->blocks, p->first, why));
+    for (int b = 0; b < p->blocks; b++)
+        p->last[b] = p->first[2 * b + 1];
+    for (int b = 0; b < p->blocks; b++)
+        p->first[b] = p->first[2 * b];
+    return STATUS_OK;
 }
 
 /* A group goes with its latest block, and after all streams where it takes part in two. */
@@ -278,7 +282,7 @@ status step_plan_make(simulation *sim, failure *why)
         return plan_whole(sim, why);
     p.together = p.chunk / CHUNK_PER_BLOCK > 1 && p.streams == 1 ? p.chunk / CHUNK_PER_BLOCK : 1;
     p.groups = (p.blocks + p.together - 1) / p.together;
-    p.first = calloc((size_t)p.blocks + 1, sizeof *p.first);
+    p.first = calloc(2 * (size_t)p.blocks + 1, sizeof *p.first);
     p.last = calloc((size_t)p.blocks + 1, sizeof *p.last);
     p.release = calloc((size_t)sim->table.wall_base / sim->block + 1, sizeof *p.release);
     p.place = calloc((size_t)p.chunks, sizeof *p.place);

@@ -16,7 +16,7 @@
 tuning tuning_default(const device_info *info)
 {
     return (tuning){
-        .block = CLAST_BLOCK, .batch_steps = 64, .chunk_records = info->cpu ? 32768 : 0, .loop_records = info->cpu ? 1800 : 1000};
+        .block = CLAST_BLOCK, .batch_steps = 64, .chunk_records = info->cpu ? 32768 : 0, .loop_records = info->cpu ? 500 : 1000};
 }
 
 /* FNV-1a, 64 bits. */

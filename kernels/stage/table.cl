@@ -343,9 +343,9 @@ __kernel void table_sort_slots(const clast_launch launch, __global const int *re
     }
 }
 
-/* Of every block the first and the last record of a pair that its grains take part in; wall_base and -1: none. */
-__kernel void table_last_records(__global const uint *restrict slot_offset, __global const int *restrict slots, __global int *restrict first_record,
-                                 __global int *restrict last_record, const int wall_base, const int blocks)
+/* Of every block the first and the last record of a pair that its grains take part in, side by side; wall_base and -1: none. */
+__kernel void table_last_records(__global const uint *restrict slot_offset, __global const int *restrict slots, __global int *restrict ends,
+                                 const int wall_base, const int blocks)
 {
     int block = get_global_id(0);
     if (block >= blocks)
@@ -357,8 +357,8 @@ __kernel void table_last_records(__global const uint *restrict slot_offset, __gl
         first = pair ? min(first, k) : first;
         last = pair ? max(last, k) : last;
     }
-    first_record[block] = first;
-    last_record[block] = last;
+    ends[2 * block] = first;
+    ends[2 * block + 1] = last;
 }
 
 /* Of every work-group of records the latest that a grain of theirs waits for, in terms of what `wait` says of its block. */
