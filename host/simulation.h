@@ -88,7 +88,7 @@ typedef struct step_loop {
     int rows_held, pieces_held;
     loop_manner manner;            /* of the batch under way */
     int64_t batches;               /* so far, with this program */
-    double pace[LOOP_MANNERS];     /* s a step of late; 0: not known */
+    double pace[LOOP_MANNERS];     /* s a step and record of late; 0: not known */
     int64_t due[LOOP_MANNERS];     /* batch in which it is to be tried again */
     int64_t interval[LOOP_MANNERS];
 } step_loop;

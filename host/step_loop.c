@@ -115,7 +115,8 @@ void step_loop_note(simulation *sim, int steps, double seconds)
     loop_manner m = loop->manner, best = fastest(loop);
     if (loop->batches++ == 0 || steps <= 0)
         return;
-    double pace = seconds / (double)steps;
+    /* of a record, since their number changes between one trial and the next */
+    double pace = seconds / ((double)steps * (1.0 + (double)sim->table.record_count));
     bool late = m != best && loop->pace[best] > 0.0 && pace > loop->pace[best];
     loop->pace[m] = m == best && loop->pace[m] > 0.0 ? loop->pace[m] + 0.2 * (pace - loop->pace[m]) : pace;
     loop->interval[m] = late && loop->interval[m] > 0 ? 2 * loop->interval[m] : TRY_INTERVAL;
