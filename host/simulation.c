@@ -541,7 +541,7 @@ status simulation_enter_stage(simulation *sim, int stage, failure *why)
     if (!same) {
         launch_close(sim);
         TRY(launch_open(sim, why));
-        sim->loop.batches = 0;
+        step_loop_forget(sim);
     }
     TRY(forget_histories(sim, why));
     TRY(servo_enter(sim, why));

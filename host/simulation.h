@@ -292,6 +292,8 @@ status step_loop_enqueue(simulation *sim, int steps, failure *why);
 const char *step_loop_name(const simulation *sim);
 /* Launches of a step so taken; 0: one of a batch. */
 int step_loop_launches(const simulation *sim);
+/* What was timed was of another program. */
+void step_loop_forget(simulation *sim);
 /* After a batch of so many steps, which took so long. */
 void step_loop_note(simulation *sim, int steps, double seconds);
 void step_loop_free(simulation *sim);

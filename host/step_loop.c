@@ -109,6 +109,15 @@ int step_loop_launches(const simulation *sim)
     return strcmp(step_loop_name(sim), "phases") == 0 ? sim->plan.phases.count : 0;
 }
 
+void step_loop_forget(simulation *sim)
+{
+    step_loop *loop = &sim->loop;
+    loop->batches = 0;
+    memset(loop->pace, 0, sizeof loop->pace);
+    memset(loop->due, 0, sizeof loop->due);
+    memset(loop->interval, 0, sizeof loop->interval);
+}
+
 void step_loop_note(simulation *sim, int steps, double seconds)
 {
     step_loop *loop = &sim->loop;
