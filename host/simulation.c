@@ -625,11 +625,13 @@ status simulation_count_leavers(simulation *sim, int64_t kept, failure *why)
 }
 
 /* The skin that balances the pairs it adds against the tables it saves, for grains that travel `used` a step (docs/performance.md): a step
- * costs about 1 + 2.7 s/r in a dense bed and less in a loose one, a table about 10 steps, and it lasts s/(2 used) steps; the factor leans to
- * the side of few tables, since it is the fast and loose beds that need many. */
+ * costs about 1 + 2.7 s/r in a dense bed and less in a loose one, and with discs two thirds of that; a table about 10 steps, and in a small bed more,
+ * since it is some fifty commands; and it lasts s/(2 used) steps. The factor leans to the side of few tables, since it is the fast and loose beds that
+ * need many. */
 static double best_skin(const simulation *sim, double used)
 {
-    double best = fmin(fmax(sqrt(24.0 * used * sim->mean_radius), 0.02 * sim->mean_radius), 1.4 * sim->mean_radius);
+    double commands = 1400.0 / (double)(sim->count > 140 ? sim->count : 140), weight = 24.0 * (1.0 + commands) * (sim->scene->dimensions == 2 ? 1.5 : 1.0);
+    double best = fmin(fmax(sqrt(weight * used * sim->mean_radius), 0.02 * sim->mean_radius), 1.4 * sim->mean_radius);
     const domain *d = &sim->scene->domain;
     for (int c = 0; d->given && c < 3; c++)
         if (d->periodic[c])
@@ -790,8 +792,11 @@ status simulation_advance(simulation *sim, int64_t steps, failure *why)
         else
             TRY(look_at_skin(sim, &rebuild, why));
         if (rebuild) {
+            int64_t lasted = sim->step - sim->rebuild_step;
+            double before = sim->rebuild_seconds;
             TRY(simulation_pose_now(sim, why));
             TRY(table_build(sim, false, why));
+            step_loop_note_table(sim, lasted, sim->rebuild_seconds - before);
         }
     }
     sim->step_seconds += seconds() - start - (sim->rebuild_seconds - rebuilding);

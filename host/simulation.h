@@ -37,6 +37,7 @@ typedef struct contact_table {
     int64_t record_capacity, slot_capacity, cell_capacity;
     int64_t slots_held[2]; /* of each generation */
     int slot_count;        /* of the generation in use */
+    cl_uint found[3];      /* pairs, records of walls and slots, as read from the device */
     bool slots_outgrown[2];
     int old_wall_base; /* of the generation in use, while the next one is built */
     cl_mem placed; /* slots that lead to the places of forces where chunks share them; NULL until they do */
@@ -88,7 +89,10 @@ typedef struct step_loop {
     int rows_held, pieces_held;
     loop_manner manner;            /* of the batch under way */
     int64_t batches;               /* so far, with this program */
+    int settling;                  /* batches that this manner still goes through before one is timed */
     double pace[LOOP_MANNERS];     /* s a step and record of late; 0: not known */
+    double table[LOOP_MANNERS];    /* s a table after such a batch, of late; 0: not known */
+    double table_steps;            /* that a table lasts, of late */
     int64_t due[LOOP_MANNERS];     /* batch in which it is to be tried again */
     int64_t interval[LOOP_MANNERS];
 } step_loop;
@@ -245,6 +249,8 @@ uint64_t field_bytes(const simulation *sim, const field *field);
 status store_write(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, const void *data, failure *why);
 status store_read(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, void *data, failure *why);
 status store_fill(simulation *sim, cl_mem mem, uint64_t bytes, failure *why);
+/* As store_read, but `data`, which must outlive the queue, is there only after the next store_read. */
+status store_ask(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, void *data, failure *why);
 /* Zeroes `count` 32-bit words from word `first` on. */
 status store_clear_ints(simulation *sim, cl_mem mem, int64_t first, int64_t count, failure *why);
 status store_copy(simulation *sim, cl_mem from, cl_mem to, uint64_t from_offset, uint64_t to_offset, uint64_t bytes, failure *why);
@@ -296,6 +302,8 @@ int step_loop_launches(const simulation *sim);
 void step_loop_forget(simulation *sim);
 /* After a batch of so many steps, which took so long. */
 void step_loop_note(simulation *sim, int steps, double seconds);
+/* What the table after the last batch took, and the steps that the one before it had lasted. */
+void step_loop_note_table(simulation *sim, int64_t lasted, double seconds);
 void step_loop_free(simulation *sim);
 
 /* step_plan.c */

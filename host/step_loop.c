@@ -16,11 +16,13 @@
 #define GROUPS_EACH 32
 /* Work-groups of a launch for each core, where pieces are shared. */
 #define SHARES_EACH 4
+/* Batches of a trial of a small bed before the one that is timed: the first ones fetch the grains from the caches of other cores. */
+#define SETTLING_BATCHES 2
 /* Batches after which a manner that was slower is tried again: at first, and at most. */
 #define TRY_INTERVAL     16
 #define TRY_INTERVAL_MAX 1024
-/* Beds of more records are not tried alone: they have work for every core. */
-#define TRY_ALONE_RECORDS 20000
+/* Beds of more records are not tried alone: they have work for every core, and long batches. */
+#define SMALL_BED_RECORDS 20000
 
 int step_loop_items(const simulation *sim)
 {
@@ -71,26 +73,44 @@ int step_loop_members(const simulation *sim)
 
 /* ---- the fastest manner ---- */
 
-static loop_manner fastest(const step_loop *loop)
+/* Seconds a step, and of the tables between: who has gone through the steps has the grains in its caches, and a table costs more where two have. */
+static double cost(const simulation *sim, loop_manner m)
+{
+    const step_loop *loop = &sim->loop;
+    double table = loop->table[m];
+    for (loop_manner other = LOOP_PHASES; other < LOOP_MANNERS && loop->table[m] <= 0.0; other++)
+        if (loop->table[other] > 0.0 && (table <= 0.0 || loop->table[other] < table))
+            table = loop->table[other];
+    return loop->pace[m] * (1.0 + (double)sim->table.record_count) + (loop->table_steps > 0.0 ? table / loop->table_steps : 0.0);
+}
+
+static loop_manner fastest(const simulation *sim)
 {
     loop_manner best = LOOP_PHASES;
     for (loop_manner m = LOOP_PHASES; m < LOOP_MANNERS; m++)
-        if (loop->pace[m] > 0.0 && loop->pace[m] < loop->pace[best])
+        if (sim->loop.pace[m] > 0.0 && cost(sim, m) < cost(sim, best))
             best = m;
     return best;
+}
+
+static bool is_small(const simulation *sim)
+{
+    return sim->table.record_count < SMALL_BED_RECORDS;
 }
 
 /* The first batch compiles, and is not timed. */
 static loop_manner choose_manner(const simulation *sim)
 {
     const step_loop *loop = &sim->loop;
-    loop_manner fixed = fixed_manner(sim), best = fastest(loop);
+    loop_manner fixed = fixed_manner(sim), best = fastest(sim);
     if (fixed != LOOP_MANNERS)
         return fixed;
+    if (loop->settling > 0)
+        return loop->manner;
     if (loop->pace[LOOP_PHASES] <= 0.0)
         return LOOP_PHASES;
     for (loop_manner m = LOOP_PHASES; m < LOOP_MANNERS; m++)
-        if (m != best && loop->batches >= loop->due[m] && (m != LOOP_ALONE || sim->table.record_count < TRY_ALONE_RECORDS))
+        if (m != best && loop->batches >= loop->due[m] && (m != LOOP_ALONE || is_small(sim)))
             return m;
     return best;
 }
@@ -99,7 +119,7 @@ const char *step_loop_name(const simulation *sim)
 {
     static const char *const name[LOOP_MANNERS] = {"phases", "team", "one group"};
     loop_manner fixed = fixed_manner(sim);
-    return step_loop_now(sim) ? name[fixed != LOOP_MANNERS ? fixed : fastest(&sim->loop)] : "two kernels";
+    return step_loop_now(sim) ? name[fixed != LOOP_MANNERS ? fixed : fastest(sim)] : "two kernels";
 }
 
 int step_loop_launches(const simulation *sim)
@@ -113,24 +133,48 @@ void step_loop_forget(simulation *sim)
 {
     step_loop *loop = &sim->loop;
     loop->batches = 0;
+    loop->settling = 0;
     memset(loop->pace, 0, sizeof loop->pace);
+    memset(loop->table, 0, sizeof loop->table);
+    loop->table_steps = 0.0;
     memset(loop->due, 0, sizeof loop->due);
     memset(loop->interval, 0, sizeof loop->interval);
+}
+
+/* The mean of late, which begins with the first. */
+static void follow(double *mean, double value)
+{
+    *mean = *mean > 0.0 ? *mean + 0.2 * (value - *mean) : value;
 }
 
 void step_loop_note(simulation *sim, int steps, double seconds)
 {
     step_loop *loop = &sim->loop;
-    loop_manner m = loop->manner, best = fastest(loop);
+    loop_manner m = loop->manner, best = fastest(sim);
     if (loop->batches++ == 0 || steps <= 0)
         return;
+    if (loop->settling > 0) {
+        loop->settling--;
+        return;
+    }
     /* of a record, since their number changes between one trial and the next */
     double pace = seconds / ((double)steps * (1.0 + (double)sim->table.record_count));
-    bool late = m != best && loop->pace[best] > 0.0 && pace > loop->pace[best];
-    loop->pace[m] = m == best && loop->pace[m] > 0.0 ? loop->pace[m] + 0.2 * (pace - loop->pace[m]) : pace;
+    if (m != best)
+        loop->pace[m] = 0.0;
+    follow(&loop->pace[m], pace);
+    bool late = m != best && loop->pace[best] > 0.0 && cost(sim, m) > cost(sim, best);
     loop->interval[m] = late && loop->interval[m] > 0 ? 2 * loop->interval[m] : TRY_INTERVAL;
     loop->interval[m] = loop->interval[m] < TRY_INTERVAL_MAX ? loop->interval[m] : TRY_INTERVAL_MAX;
     loop->due[m] = loop->batches + loop->interval[m];
+}
+
+void step_loop_note_table(simulation *sim, int64_t lasted, double seconds)
+{
+    step_loop *loop = &sim->loop;
+    if (loop->batches < 2 || loop->settling > 0 || lasted <= 0)
+        return;
+    follow(&loop->table[loop->manner], seconds);
+    follow(&loop->table_steps, (double)lasted);
 }
 
 static uint64_t pieces_bytes(int count)
@@ -197,7 +241,10 @@ status step_loop_enqueue(simulation *sim, int steps, failure *why)
 {
     cl_kernel kernel = launch_kernel(sim, "step_loop");
     step_loop *loop = &sim->loop;
+    loop_manner before = loop->manner;
     loop->manner = choose_manner(sim);
+    if (loop->manner != before)
+        loop->settling = is_small(sim) ? SETTLING_BATCHES : 0;
     int bond_step = bonds_step(sim, steps), most = loop->manner == LOOP_TEAM ? step_loop_members(sim) : 1, items = step_loop_items(sim);
     TRY(fit_rows(sim, steps, why));
     for (int s = 0; s < steps; s++) {

@@ -201,15 +201,23 @@ static status sort_grains(simulation *sim, const clast_launch *launch, failure *
     return STATUS_OK;
 }
 
-/* By way of the positions at the last table, which are written anew in the end; an orientation, of four, by way of twice its room. */
-static status permute_numbers(simulation *sim, const clast_launch *launch, cl_mem mem, field_type type, int components, failure *why)
+/* By way of the positions at the last table, which are written anew in the end, and an orientation, of four, by way of twice its room. What is as
+ * large as positions changes places with them instead of being copied back. */
+static status permute_numbers(simulation *sim, const clast_launch *launch, stored_field *stored, failure *why)
 {
+    field_type type = stored->field->type;
+    int components = stored->field->components;
     const char *name = type == FIELD_EXACT ? "table_permute_exact" : "table_permute_real";
     cl_kernel kernel = launch_kernel(sim, name);
-    cl_mem scratch = components > 3 ? sim->scratch4 : sim->built_position;
-    TRY(launch_set(kernel, name, why, "Lmmmi", launch, sim->table.work[WORK_C], mem, scratch, components));
+    cl_mem from = stored->mem, scratch = components > 3 ? sim->scratch4 : sim->built_position;
+    TRY(launch_set(kernel, name, why, "Lmmmi", launch, sim->table.work[WORK_C], from, scratch, components));
     TRY(launch_run(sim, kernel, name, sim->count, sim->block, why));
-    return store_copy(sim, scratch, mem, 0, 0, store_item(sim, type) * (uint64_t)(sim->count * components), why);
+    if (field_bytes(sim, stored->field) == field_bytes(sim, &field_position)) {
+        stored->mem = sim->built_position;
+        sim->built_position = from;
+        return STATUS_OK;
+    }
+    return store_copy(sim, scratch, from, 0, 0, store_item(sim, type) * (uint64_t)(sim->count * components), why);
 }
 
 static status permute_fields(simulation *sim, const clast_launch *launch, failure *why)
@@ -221,7 +229,7 @@ static status permute_fields(simulation *sim, const clast_launch *launch, failur
         if (field->extent != PER_PARTICLE || field->role != FIELD_STATE)
             continue;
         if (field->type != FIELD_INT) {
-            TRY(permute_numbers(sim, launch, mem, field->type, field->components, why));
+            TRY(permute_numbers(sim, launch, &sim->field[f], why));
             continue;
         }
         TRY(launch_set(kernel, "table_permute_int", why, "Lmmm", launch, sim->table.work[WORK_C], mem, sim->table.work[WORK_B]));
@@ -239,12 +247,14 @@ static int kept_partners(const simulation *sim)
     return room > 32 ? 32 : (int)room;
 }
 
-/* Owned pairs into work A, their starts into D, wall records' starts into E, slots of every grain into B. */
+/* Owned pairs into work A, their starts into D, wall records' starts into E, slots of every grain into B, and where those of a block begin. What
+ * the host needs to know of them is read at once: to wait costs more than many a kernel. */
 static status count_records(simulation *sim, const clast_launch *launch, failure *why)
 {
     contact_table *t = &sim->table;
-    cl_mem position = store_find(sim, "position")->mem, radius = table_radii(sim), id = store_find(sim, "id")->mem;
-    cl_kernel count = launch_kernel(sim, "table_count"), walls = launch_kernel(sim, "table_count_walls");
+    int64_t blocks = sim->stride / sim->block;
+    cl_mem position = store_find(sim, "position")->mem, radius = table_radii(sim), id = store_find(sim, "id")->mem, offset = t->slot_offset[1 - t->now];
+    cl_kernel count = launch_kernel(sim, "table_count"), walls = launch_kernel(sim, "table_count_walls"), widths = launch_kernel(sim, "table_widths");
     TRY(store_fill(sim, t->work[WORK_A], 4 * (uint64_t)sim->stride, why));
     TRY(store_fill(sim, t->work[WORK_B], 4 * (uint64_t)sim->stride, why));
     TRY(launch_set(count, "table_count", why, "Lmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_A], t->work[WORK_B],
@@ -252,17 +262,21 @@ static status count_records(simulation *sim, const clast_launch *launch, failure
     TRY(launch_run(sim, count, "table_count", sim->count, sim->block, why));
     TRY(bonds_keep(sim, launch, kept_partners(sim), false, why));
     TRY(scan(sim, t->work[WORK_A], t->work[WORK_D], sim->stride, why));
-    t->wall_record_count = 0;
-    cl_uint total;
-    TRY(store_read(sim, t->work[WORK_D], 4 * (uint64_t)sim->stride, sizeof total, &total, why));
-    t->pair_count = (int)total;
     if (walls) {
         TRY(launch_set(walls, "table_count_walls", why, "Lmmmmmm", launch, t->grid, position, radius, sim->faces, t->work[WORK_A], t->work[WORK_B]));
         TRY(launch_run(sim, walls, "table_count_walls", sim->stride, sim->block, why));
         TRY(scan(sim, t->work[WORK_A], t->work[WORK_E], sim->stride, why));
-        TRY(store_read(sim, t->work[WORK_E], 4 * (uint64_t)sim->stride, sizeof total, &total, why));
-        t->wall_record_count = (int)total;
     }
+    TRY(launch_set(widths, "table_widths", why, "mm", t->work[WORK_B], t->width));
+    TRY(launch_run(sim, widths, "table_widths", blocks, 1, why));
+    TRY(scan(sim, t->width, offset, blocks, why));
+    TRY(store_ask(sim, t->work[WORK_D], 4 * (uint64_t)sim->stride, sizeof(cl_uint), &t->found[0], why));
+    if (walls)
+        TRY(store_ask(sim, t->work[WORK_E], 4 * (uint64_t)sim->stride, sizeof(cl_uint), &t->found[1], why));
+    TRY(store_read(sim, offset, 4 * (uint64_t)blocks, sizeof(cl_uint), &t->found[2], why));
+    t->pair_count = (int)t->found[0];
+    t->wall_record_count = walls ? (int)t->found[1] : 0;
+    t->slot_count = (int)t->found[2];
     t->wall_base = (int)round_up(t->pair_count, sim->block);
     t->record_count = (int)round_up(t->wall_base + t->wall_record_count, sim->block);
     return STATUS_OK;
@@ -312,33 +326,24 @@ static status fill_records(simulation *sim, const clast_launch *launch, int room
                    t->other[next], store_find(sim, "force")->mem, room));
     TRY(launch_run(sim, fill, "table_fill", sim->count, sim->block, why));
     TRY(bonds_keep(sim, launch, room, true, why));
-    TRY(launch_set(pad, "table_pad", why, "mmii", t->owner[next], t->other[next], t->pair_count, t->wall_base));
-    TRY(launch_run(sim, pad, "table_pad", t->wall_base - t->pair_count, sim->block, why));
     int end = t->wall_base + t->wall_record_count;
     if (walls) {
         TRY(launch_set(walls, "table_fill_walls", why, "Lmmmmmmmi", launch, t->grid, position, radius, sim->faces, t->work[WORK_E], t->owner[next],
                        t->other[next], t->wall_base));
         TRY(launch_run(sim, walls, "table_fill_walls", sim->count, sim->block, why));
     }
-    TRY(launch_set(pad, "table_pad", why, "mmii", t->owner[next], t->other[next], end, t->record_count));
-    return launch_run(sim, pad, "table_pad", t->record_count - end, sim->block, why);
+    TRY(launch_set(pad, "table_pad", why, "mmiiii", t->owner[next], t->other[next], t->pair_count, t->wall_base, end, t->record_count));
+    return launch_run(sim, pad, "table_pad", t->wall_base - t->pair_count + t->record_count - end, sim->block, why);
 }
 
 static status fill_slots(simulation *sim, const clast_launch *launch, failure *why)
 {
     contact_table *t = &sim->table;
     int next = 1 - t->now, end = t->wall_base + t->wall_record_count;
-    int64_t blocks = sim->stride / sim->block;
     cl_mem id = store_find(sim, "id")->mem;
-    cl_kernel widths = launch_kernel(sim, "table_widths"), slots = launch_kernel(sim, "table_slots"), sort = launch_kernel(sim, "table_sort_slots");
-    TRY(launch_set(widths, "table_widths", why, "mm", t->work[WORK_B], t->width));
-    TRY(launch_run(sim, widths, "table_widths", blocks, 1, why));
-    TRY(scan(sim, t->width, t->slot_offset[next], blocks, why));
-    cl_uint total;
-    TRY(store_read(sim, t->slot_offset[next], 4 * (uint64_t)blocks, sizeof total, &total, why));
-    TRY(fit_slots(sim, total, why));
-    t->slot_count = (int)total;
-    TRY(store_fill(sim, t->slots[next], 4 * (uint64_t)total, why));
+    cl_kernel slots = launch_kernel(sim, "table_slots"), sort = launch_kernel(sim, "table_sort_slots");
+    TRY(fit_slots(sim, t->slot_count, why));
+    TRY(store_fill(sim, t->slots[next], 4 * (uint64_t)t->slot_count, why));
     TRY(store_fill(sim, t->work[WORK_A], 4 * (uint64_t)sim->stride, why));
     TRY(launch_set(slots, "table_slots", why, "mmmmmiii", t->owner[next], t->other[next], t->slot_offset[next], t->work[WORK_A], t->slots[next],
                    t->pair_count, t->wall_base, end));
@@ -384,16 +389,14 @@ static status carry_histories(simulation *sim, int64_t old_stride, failure *why)
 static status match_records(simulation *sim, int old_wall_base, failure *why)
 {
     contact_table *t = &sim->table;
-    int next = 1 - t->now, end = t->record_count;
+    int next = 1 - t->now;
     if (!t->built)
-        return store_fill(sim, t->match, 4 * (uint64_t)end, why);
+        return store_fill(sim, t->match, 4 * (uint64_t)t->record_count, why);
     cl_kernel match = launch_kernel(sim, "table_match");
-    TRY(launch_set(match, "table_match", why, "mmmmmmmmiiii", t->owner[next], t->other[next], t->work[WORK_C], t->owner[t->now], t->other[t->now],
-                   t->slot_offset[t->now], t->slots[t->now], t->match, t->pair_count, t->wall_base, t->wall_base + t->wall_record_count,
+    TRY(launch_set(match, "table_match", why, "mmmmmmmmiiiii", t->owner[next], t->other[next], t->work[WORK_C], t->owner[t->now], t->other[t->now],
+                   t->slot_offset[t->now], t->slots[t->now], t->match, t->pair_count, t->wall_base, t->wall_base + t->wall_record_count, t->record_count,
                    old_wall_base));
-    TRY(launch_run(sim, match, "table_match", t->wall_base + t->wall_record_count, sim->block, why));
-    int rest = t->record_count - (t->wall_base + t->wall_record_count);
-    return rest > 0 ? store_clear_ints(sim, t->match, t->wall_base + t->wall_record_count, rest, why) : STATUS_OK;
+    return launch_run(sim, match, "table_match", t->record_count, sim->block, why);
 }
 
 /* The generation left behind is brought to the size of the other one once it is free. */

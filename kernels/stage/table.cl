@@ -278,11 +278,13 @@ __kernel void table_fill(const clast_launch launch, __global const clast_grid *r
         owner[a] = i;
 }
 
-/* Records that fill up a work-group name grain 0 twice. */
-__kernel void table_pad(__global int *restrict owner, __global int *restrict other, const int first, const int end)
+/* Records that fill up a work-group, behind the pairs and behind the walls, name grain 0 twice. */
+__kernel void table_pad(__global int *restrict owner, __global int *restrict other, const int pair_end, const int wall_base, const int wall_end,
+                        const int record_count)
 {
-    int k = first + (int)get_global_id(0);
-    if (k < end) {
+    int k = pair_end + (int)get_global_id(0);
+    k = k < wall_base ? k : wall_end + k - wall_base;
+    if (k < record_count) {
         owner[k] = 0;
         other[k] = 0;
     }
@@ -395,13 +397,13 @@ __kernel void table_place(__global const int *restrict slots, __global const int
 __kernel void table_match(__global const int *restrict owner, __global const int *restrict other, __global const int *restrict order,
                           __global const int *restrict old_owner, __global const int *restrict old_other,
                           __global const uint *restrict old_slot_offset, __global const int *restrict old_slots, __global int *restrict match,
-                          const int pair_count, const int wall_base, const int record_count, const int old_wall_base)
+                          const int pair_count, const int wall_base, const int wall_end, const int record_count, const int old_wall_base)
 {
     int k = get_global_id(0);
     if (k >= record_count)
         return;
     match[k] = 0;
-    if (k >= pair_count && k < wall_base)
+    if ((k >= pair_count && k < wall_base) || k >= wall_end)
         return;
     bool wall = k >= wall_base;
     int i = order[owner[k]], wanted = wall ? other[k] : order[other[k]];
