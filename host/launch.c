@@ -197,10 +197,14 @@ static bool has_kernel(const simulation *sim, const char *name)
     return !strstr(name, "_walls") || sim->live.law[SLOT_WALLS];
 }
 
-/* Where it is the usual one, programs are as they were before the device was tuned, and so taken from the cache. */
-static void define_block(const simulation *sim, char *text, size_t size)
+/* What of a device its programs are to know. Where the block is the usual one, programs are as they were before the device was tuned, and so taken
+ * from the cache. */
+static void define_device(const simulation *sim, char *text, size_t size)
 {
     size_t used = strlen(text);
+    if (sim->device->info.cpu)
+        snprintf(text + used, size - used, "#define BODY OUTLINE\n");
+    used = strlen(text);
     if (sim->block != CLAST_BLOCK)
         snprintf(text + used, size - used, "#define CLAST_BLOCK %d\n", sim->block);
 }
@@ -211,8 +215,8 @@ status launch_open(simulation *sim, failure *why)
     char constants[8192], table_constants[256];
     live_table_constants(&sim->live, table_constants, sizeof table_constants);
     live_constants(&sim->live, sim->scene, constants, sizeof constants);
-    define_block(sim, table_constants, sizeof table_constants);
-    define_block(sim, constants, sizeof constants);
+    define_device(sim, table_constants, sizeof table_constants);
+    define_device(sim, constants, sizeof constants);
     int count = live_files(&sim->live, files, FILES_MAX - 1);
     if (step_loop_wanted(sim))
         files[count++] = "stage/step_loop.cl";

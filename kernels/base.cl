@@ -30,6 +30,11 @@ typedef uint real_bits;
 #define INLINE static inline __attribute__((always_inline))
 /* For what few work-items do: kept out of the loop that is to vectorise. */
 #define OUTLINE static __attribute__((noinline))
+/* The body of a kernel that calls it once for much work. Pocl compiles a kernel three times, for three ways to start it, but a function of its own
+ * once: there the host defines it as OUTLINE (host/launch.c). */
+#ifndef BODY
+#define BODY INLINE
+#endif
 
 typedef struct vec3 {
     real x, y, z;

@@ -1,5 +1,12 @@
 /* The two stages with a record or a grain to a work-item: the form for GPUs. Its twin is by_blocks.cl, and both give the same bits. */
 
+/* A kernel that calls one(launch, k, wall) for every record; walls have work-groups of their own. */
+#define RECORD_KERNEL(name, one)                                                                   \
+    __kernel void name(const clast_launch launch PAIR_DECLARE)                                     \
+    {                                                                                              \
+        one(&launch, get_global_id(0), (int)get_group_id(0) >= launch.first_wall_group PAIR_PASS); \
+    }
+
 __kernel void pair_stage(const clast_launch launch, __global const clast_control *restrict control PAIR_DECLARE)
 {
     if (control->halt_step <= launch.step)

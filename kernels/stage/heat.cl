@@ -1,40 +1,40 @@
 /* What the limit of the thermal step, observables and methods for frozen beds read of heat. In programs with a temperature only. */
 
 /* Every record's conductance where its heat stands, W/K; 0 at a wall that has no temperature of its own. */
-__kernel void heat_conductances(const clast_launch launch PAIR_DECLARE)
+INLINE void heat_conductance(const clast_launch *launch, int k, bool wall PAIR_DECLARE)
 {
-    int k = get_global_id(0);
     contact c;
     wall_touch touch;
-    bool wall = (int)get_group_id(0) >= launch.first_wall_group;
     if (wall)
-        contact_of_wall(&launch, k, &c, &touch PAIR_PASS);
+        contact_of_wall(launch, k, &c, &touch PAIR_PASS);
     else
-        contact_of_grains(&launch, k, &c PAIR_PASS);
+        contact_of_grains(launch, k, &c PAIR_PASS);
     c.dt = R(0.0);
     c.value = contact_constants + c.class * CONTACT_CONSTANTS;
     bond_state bond;
-    BOND_LOAD(&launch, k, bond);
+    BOND_LOAD(launch, k, bond);
     bond_geometry(&c, &bond); /* a neck may conduct */
-    real conductance = wall ? WALL_HEAT_CONDUCTS(&launch, other[k]) * conduction_wall_conductance(&c) : conduction_conductance(&c);
-    CONDUCTION_STORE(&launch, k, conductance);
+    real conductance = wall ? WALL_HEAT_CONDUCTS(launch, other[k]) * conduction_wall_conductance(&c) : conduction_conductance(&c);
+    CONDUCTION_STORE(launch, k, conductance);
 }
+
+RECORD_KERNEL(heat_conductances, heat_conductance)
 
 /* Per chunk of grains the smallest m c/(sum of what draws its temperature towards others'): by conduction, convection, radiation to a surface
  * at most `hottest`, and by all. Reads the records' conductances. */
 #define HEAT_LIMITS 4
 
-__kernel void heat_limit(const clast_launch launch, __global exact *restrict partial, const real hottest PARTICLE_DECLARE)
+BODY void heat_limit_unit(int chunk, const clast_launch *launch, __global exact *restrict partial, const real hottest PARTICLE_DECLARE)
 {
-    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
+    int first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch->particle_count);
     real least[HEAT_LIMITS] = {R(1e30), R(1e30), R(1e30), R(1e30)};
     for (int i = first; i < end; i++) {
         grain g;
-        particle_grain(&launch, i, &g PARTICLE_PASS);
+        particle_grain(launch, i, &g PARTICLE_PASS);
         real conduction = R(0.0);
         uint last = slot_offset[i / CLAST_BLOCK + 1];
         for (uint s = slot_offset[i / CLAST_BLOCK] + i % CLAST_BLOCK; s < last && slots[s] != 0; s += CLAST_BLOCK)
-            conduction += CONDUCTION_GATHER(&launch, (slots[s] > 0 ? slots[s] : -slots[s]) - 1, R(1.0));
+            conduction += CONDUCTION_GATHER(launch, (slots[s] > 0 ? slots[s] : -slots[s]) - 1, R(1.0));
         real convection = convection_coefficient(&g, g.temperature), radiation = radiation_coefficient(&g, hottest);
         const real rates[HEAT_LIMITS] = {conduction, convection, radiation, conduction + convection + radiation};
         for (int q = 0; q < HEAT_LIMITS; q++)
@@ -44,14 +44,19 @@ __kernel void heat_limit(const clast_launch launch, __global exact *restrict par
         partial[HEAT_LIMITS * chunk + q] = precise_store(precise_from(least[q]));
 }
 
+__kernel void heat_limit(const clast_launch launch, __global exact *restrict partial, const real hottest PARTICLE_DECLARE)
+{
+    heat_limit_unit(get_global_id(0), &launch, partial, hottest PARTICLE_PASS);
+}
+
 /* Sums in the order of permanent ids: heat content, sum of temperatures, number of grains, the smallest with its sign turned and the largest temperature, and what each
  * path has brought, where that is kept. */
 #define HEAT_SUMS (5 + CLAST_TALLIES)
 
-__kernel void heat_sums(const clast_launch launch, __global const int *restrict where, __global exact *restrict partial,
-                        const int id_count PARTICLE_DECLARE)
+BODY void heat_sums_unit(int chunk, const clast_launch *launch, __global const int *restrict where, __global exact *restrict partial,
+                         const int id_count PARTICLE_DECLARE)
 {
-    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, id_count);
+    int first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, id_count);
     precise sum[HEAT_SUMS];
     for (int q = 0; q < HEAT_SUMS; q++)
         sum[q] = precise_from(R(0.0));
@@ -61,7 +66,7 @@ __kernel void heat_sums(const clast_launch launch, __global const int *restrict 
         if (i < 0)
             continue;
         grain g;
-        particle_grain(&launch, i, &g PARTICLE_PASS);
+        particle_grain(launch, i, &g PARTICLE_PASS);
         precise t = TEMPERATURE_PRECISE(i);
         sum[0] = precise_add(sum[0], temperature_content(&g, t));
         sum[1] = precise_add(sum[1], t);
@@ -73,6 +78,12 @@ __kernel void heat_sums(const clast_launch launch, __global const int *restrict 
     }
     for (int q = 0; q < HEAT_SUMS; q++)
         partial[HEAT_SUMS * chunk + q] = precise_store(sum[q]);
+}
+
+__kernel void heat_sums(const clast_launch launch, __global const int *restrict where, __global exact *restrict partial,
+                        const int id_count PARTICLE_DECLARE)
+{
+    heat_sums_unit(get_global_id(0), &launch, where, partial, id_count PARTICLE_PASS);
 }
 
 /* What draws every grain's temperature towards the environment's, from a surface at most `hottest`, W/K. */

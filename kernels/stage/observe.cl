@@ -17,20 +17,21 @@ INLINE void observe_add3(precise *sum, precise factor, precise3 value)
     observe_add(sum + 2, precise_mul(factor, value.z));
 }
 
-__kernel void observe_particles(const clast_launch launch, __global const int *restrict where, __global const exact *restrict position,
-                                __global const exact *restrict velocity, __global const exact *restrict radius, __global const real *restrict mass,
-                                __global exact *restrict partial, const int id_count ROTATION_OBSERVE_FIELDS(DECLARE_READ, DECLARE_WRITE))
+BODY void observe_particles_unit(int chunk, const clast_launch *launch, __global const int *restrict where,
+                                 __global const exact *restrict position, __global const exact *restrict velocity,
+                                 __global const exact *restrict radius, __global const real *restrict mass,
+                                 __global exact *restrict partial, const int id_count ROTATION_OBSERVE_FIELDS(DECLARE_READ, DECLARE_WRITE))
 {
-    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, id_count);
+    int first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, id_count);
     precise sum[OBSERVE_PARTICLE_SUMS], one_half = precise_from(R(0.5));
     for (int q = 0; q < OBSERVE_PARTICLE_SUMS; q++)
         sum[q] = precise_from(R(0.0));
-    precise3 g = PRECISE3(launch.gravity);
+    precise3 g = PRECISE3(launch->gravity);
     for (int n = first; n < end; n++) {
         int i = where[n];
         if (i < 0)
             continue;
-        precise3 x = PRECISE_GRAIN3(position, i), v = PRECISE_GRAIN3(velocity, i), w = ROTATION_PRECISE(&launch, i);
+        precise3 x = PRECISE_GRAIN3(position, i), v = PRECISE_GRAIN3(velocity, i), w = ROTATION_PRECISE(launch, i);
         precise m = precise_from(mass[i]), r = precise_load(radius[i]);
         precise inertia = precise_mul(precise_mul(precise_mul(precise_from(R(0.4)), m), r), r);
         observe_add(sum, precise_mul(precise_mul(one_half, m), precise3_dot(v, v)));
@@ -46,6 +47,26 @@ __kernel void observe_particles(const clast_launch launch, __global const int *r
     for (int q = 0; q < OBSERVE_PARTICLE_SUMS; q++)
         partial[chunk * OBSERVE_PARTICLE_SUMS + q] = precise_store(sum[q]);
 }
+
+__kernel void observe_particles(const clast_launch launch, __global const int *restrict where, __global const exact *restrict position,
+                                __global const exact *restrict velocity, __global const exact *restrict radius,
+                                __global const real *restrict mass, __global exact *restrict partial,
+                                const int id_count ROTATION_OBSERVE_FIELDS(DECLARE_READ, DECLARE_WRITE))
+{
+    observe_particles_unit(get_global_id(0), &launch, where, position, velocity, radius, mass, partial,
+                           id_count ROTATION_OBSERVE_FIELDS(PASS, PASS));
+}
+
+/* The forces as they stand, with no step taken: what output and observables read. Leaves history alone. */
+INLINE void probe_record(const clast_launch *launch, int k, bool wall PAIR_DECLARE)
+{
+    if (wall)
+        pair_of_wall_as_is(launch, k PAIR_PASS);
+    else
+        pair_of_grains_as_is(launch, k PAIR_PASS);
+}
+
+RECORD_KERNEL(pair_probe, probe_record)
 
 /* Per record, where its force stands: overlap over the smaller radius, elastic energy, overlap. History and pair list stay. */
 INLINE void observe_record(const clast_launch *launch, int k, bool wall PAIR_DECLARE)
@@ -73,37 +94,34 @@ INLINE void observe_record(const clast_launch *launch, int k, bool wall PAIR_DEC
     AT(force, launch->record_stride, 2, k) = c.overlap;
 }
 
-__kernel void observe_records(const clast_launch launch PAIR_DECLARE)
-{
-    observe_record(&launch, get_global_id(0), (int)get_group_id(0) >= launch.first_wall_group PAIR_PASS);
-}
+RECORD_KERNEL(observe_records, observe_record)
 
 /* Every record's normal, and stiffness and damping of its modes, where its force and torque stand. Both count twice between two grains: of
  * the energy of a spring, (a + b)^2 <= 2 a^2 + 2 b^2 goes to its two ends (docs/theory.md). */
-__kernel void limit_records(const clast_launch launch PAIR_DECLARE)
+INLINE void limit_record(const clast_launch *launch, int k, bool wall PAIR_DECLARE)
 {
-    int k = get_global_id(0);
     contact c;
     wall_touch touch;
-    bool wall = (int)get_group_id(0) >= launch.first_wall_group;
     if (wall)
-        contact_of_wall(&launch, k, &c, &touch PAIR_PASS);
+        contact_of_wall(launch, k, &c, &touch PAIR_PASS);
     else
-        contact_of_grains(&launch, k, &c PAIR_PASS);
+        contact_of_grains(launch, k, &c PAIR_PASS);
     c.dt = c.elapsed = R(0.0);
     c.value = contact_constants + c.class * CONTACT_CONSTANTS;
     real twice = wall ? R(1.0) : R(2.0);
     mode n = normal_mode(&c), t = tangential_mode(&c), r = rolling_mode(&c);
     bond_state bond;
     cohesion_state cohesion;
-    BOND_LOAD(&launch, k, bond);
-    COHESION_LOAD(&launch, k, cohesion);
+    BOND_LOAD(launch, k, bond);
+    COHESION_LOAD(launch, k, cohesion);
     bond_modes(&c, &bond, &n, &t, &r);
     const mode without = n;
     cohesion_mode(&c, &cohesion, &n);
     n = bond_holds(&bond) > R(0.5) ? without : n;
-    LIMIT_STORE(&launch, k, twice, c.n, n, t, r);
+    LIMIT_STORE(launch, k, twice, c.n, n, t, r);
 }
+
+RECORD_KERNEL(limit_records, limit_record)
 
 /* Largest dt with dt^2 a + 2 dt b < 4; b counts twice where laws are given an extrapolated velocity (docs/theory.md). */
 INLINE real limit_step(real a, real damping)
@@ -162,11 +180,12 @@ INLINE real limit_largest(const limit_block *b)
 }
 
 /* Per chunk of grains the smallest limit with the normal modes alone, and with all. */
-__kernel void limit_particles(const clast_launch launch, __global const uint *restrict slot_offset, __global const int *restrict slots,
-                              __global const real *restrict force, __global const exact *restrict radius, __global const real *restrict mass,
-                              __global exact *restrict partial ROTATION_LIMIT_FIELDS(DECLARE_READ, DECLARE_WRITE))
+BODY void limit_particles_unit(int chunk, const clast_launch *launch, __global const uint *restrict slot_offset,
+                               __global const int *restrict slots, __global const real *restrict force,
+                               __global const exact *restrict radius, __global const real *restrict mass,
+                               __global exact *restrict partial ROTATION_LIMIT_FIELDS(DECLARE_READ, DECLARE_WRITE))
 {
-    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
+    int first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch->particle_count);
     real alone = R(1e30), all = R(1e30);
     for (int i = first; i < end; i++) {
         limit_block zero = {{0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, {0, 0, 0}};
@@ -179,7 +198,7 @@ __kernel void limit_particles(const clast_launch launch, __global const uint *re
             int k = (entry > 0 ? entry : -entry) - 1;
             vec3 n;
             mode normal, tangential, rolling;
-            LIMIT_LOAD(&launch, k, n, normal, tangential, rolling);
+            LIMIT_LOAD(launch, k, n, normal, tangential, rolling);
             real r = GRAIN_RADIUS(i), spin = R(2.5) / (r * r);
             limit_contact(&stiff, n, normal.stiffness, tangential.stiffness, spin * rolling.stiffness);
             limit_contact(&damp, n, normal.damping, tangential.damping, spin * rolling.damping);
@@ -194,6 +213,14 @@ __kernel void limit_particles(const clast_launch launch, __global const uint *re
     partial[2 * chunk + 1] = precise_store(precise_from(all));
 }
 
+__kernel void limit_particles(const clast_launch launch, __global const uint *restrict slot_offset, __global const int *restrict slots,
+                              __global const real *restrict force, __global const exact *restrict radius,
+                              __global const real *restrict mass,
+                              __global exact *restrict partial ROTATION_LIMIT_FIELDS(DECLARE_READ, DECLARE_WRITE))
+{
+    limit_particles_unit(get_global_id(0), &launch, slot_offset, slots, force, radius, mass, partial ROTATION_LIMIT_FIELDS(PASS, PASS));
+}
+
 /* The contact to expect between two bodies of a class: that of an impact at `speed`, or under `weight`, whichever is deeper.
  * result: overlap (m), limits of the normal and of the turning modes (s), duration of the impact without damping (s), conductance (W/K). */
 #define EXPECTED_BISECTIONS 200
@@ -206,8 +233,9 @@ INLINE void expected_at(contact *c, real overlap)
     contact_complete(c);
 }
 
-__kernel void limit_expected(__global const real *restrict contact_constants, __global exact *restrict result, const int class, const real radius_i,
-                             const real radius_j, const real mass_i, const real mass_j, const real speed, const real weight)
+BODY void limit_expected_unit(__global const real *restrict contact_constants, __global exact *restrict result, const int class,
+                              const real radius_i, const real radius_j, const real mass_i, const real mass_j, const real speed,
+                              const real weight)
 {
     contact c;
     bool wall = mass_j <= R(0.0);
@@ -281,17 +309,24 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
     result[4] = precise_store(precise_from(conductance));
 }
 
+__kernel void limit_expected(__global const real *restrict contact_constants, __global exact *restrict result, const int class,
+                             const real radius_i, const real radius_j, const real mass_i, const real mass_j, const real speed,
+                             const real weight)
+{
+    limit_expected_unit(contact_constants, result, class, radius_i, radius_j, mass_i, mass_j, speed, weight);
+}
+
 /* Guards, per chunk: first grain that is not a number, that moves too far in a step, that has left the domain (sorted indices; -1: none),
  * and the largest speed squared. Numbers are tested by their bits (is_number), so that no compiler option can lose the test. */
 #define GUARD_FINDINGS 4
 
-__kernel void guard_particles(const clast_launch launch, __global const exact *restrict position, __global const exact *restrict velocity,
-                              __global exact *restrict partial, const int bounded)
+BODY void guard_particles_unit(int chunk, const clast_launch *launch, __global const exact *restrict position,
+                               __global const exact *restrict velocity, __global exact *restrict partial, const int bounded)
 {
-    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
+    int first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch->particle_count);
     int bad = -1, fastest = -1, left = -1;
     real most = R(0.0);
-    vec3 low = from3(launch.low), high = from3(launch.high), common = from3(launch.drift); /* of velocity here */
+    vec3 low = from3(launch->low), high = from3(launch->high), common = from3(launch->drift); /* of velocity here */
     for (int i = first; i < end; i++) {
         vec3 x = GRAIN3(position, i), v = sub(GRAIN3(velocity, i), common);
         real speed2 = dot3(v, v);
@@ -314,17 +349,23 @@ __kernel void guard_particles(const clast_launch launch, __global const exact *r
     partial[chunk * GUARD_FINDINGS + 3] = precise_store(precise_from(most));
 }
 
-/* Per chunk of records the largest overlap over the smaller radius, and its record. Geometry only: cheap, and touches no field. */
-__kernel void guard_records(const clast_launch launch, __global const int *restrict owner, __global const int *restrict other,
-                            __global const exact *restrict position, __global const exact *restrict radius, __global exact *restrict partial,
-                            const int pair_count)
+__kernel void guard_particles(const clast_launch launch, __global const exact *restrict position, __global const exact *restrict velocity,
+                              __global exact *restrict partial, const int bounded)
 {
-    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, pair_count);
+    guard_particles_unit(get_global_id(0), &launch, position, velocity, partial, bounded);
+}
+
+/* Per chunk of records the largest overlap over the smaller radius, and its record. Geometry only: cheap, and touches no field. */
+BODY void guard_records_unit(int chunk, const clast_launch *launch, __global const int *restrict owner, __global const int *restrict other,
+                             __global const exact *restrict position, __global const exact *restrict radius,
+                             __global exact *restrict partial, const int pair_count)
+{
+    int first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, pair_count);
     real most = R(0.0);
     int where = -1;
     for (int k = first; k < end; k++) {
         int i = owner[k], j = other[k];
-        apart3 d = periodic_nearest(&launch, apart_of(PRECISE_GRAIN3(position, j), PRECISE_GRAIN3(position, i)));
+        apart3 d = periodic_nearest(launch, apart_of(PRECISE_GRAIN3(position, j), PRECISE_GRAIN3(position, i)));
         precise radius_i = precise_load(radius[i]), radius_j = precise_load(radius[j]);
         real smaller = fmin(rounded(radius_i), rounded(radius_j)), distance = sqrt(dot3(apart_vector(d), apart_vector(d)));
         real ratio = sphere_overlap(d, distance, radius_i, radius_j) / smaller;
@@ -335,4 +376,11 @@ __kernel void guard_records(const clast_launch launch, __global const int *restr
     }
     partial[2 * chunk] = precise_store(precise_from(most));
     partial[2 * chunk + 1] = precise_store(precise_from_int(where));
+}
+
+__kernel void guard_records(const clast_launch launch, __global const int *restrict owner, __global const int *restrict other,
+                            __global const exact *restrict position, __global const exact *restrict radius,
+                            __global exact *restrict partial, const int pair_count)
+{
+    guard_records_unit(get_global_id(0), &launch, owner, other, position, radius, partial, pair_count);
 }

@@ -78,13 +78,3 @@ PAIR_OF_GRAINS(pair_of_grains, PAIR_STORE_STATE)
 PAIR_OF_WALL(pair_of_wall, PAIR_STORE_STATE)
 PAIR_OF_GRAINS(pair_of_grains_as_is, PAIR_KEEP_NOTHING)
 PAIR_OF_WALL(pair_of_wall_as_is, PAIR_KEEP_NOTHING)
-
-/* The forces as they stand, with no step taken: what output and observables read. Leaves history alone. */
-__kernel void pair_probe(const clast_launch launch PAIR_DECLARE)
-{
-    int k = get_global_id(0);
-    if ((int)get_group_id(0) < launch.first_wall_group)
-        pair_of_grains_as_is(&launch, k PAIR_PASS);
-    else
-        pair_of_wall_as_is(&launch, k PAIR_PASS);
-}

@@ -16,17 +16,22 @@ INLINE real stiffness_heating(const clast_launch *launch, int i, const grain *g 
 }
 
 /* Per chunk of grains the largest rate of change of the logarithm of a modulus, 1/s, and of a radius, m/s. */
-__kernel void stiffness_rate(const clast_launch launch, __global exact *restrict partial PARTICLE_DECLARE)
+BODY void stiffness_rate_unit(int chunk, const clast_launch *launch, __global exact *restrict partial PARTICLE_DECLARE)
 {
-    int chunk = get_global_id(0), first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch.particle_count);
+    int first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch->particle_count);
     real modulus = R(0.0), radial = R(0.0);
     for (int i = first; i < end; i++) {
         grain g;
-        particle_grain(&launch, i, &g PARTICLE_PASS);
-        real rate = stiffness_heating(&launch, i, &g PARTICLE_PASS);
+        particle_grain(launch, i, &g PARTICLE_PASS);
+        real rate = stiffness_heating(launch, i, &g PARTICLE_PASS);
         modulus = fmax(modulus, fabs(MODULUS_RATE(&g, rate)));
         radial = fmax(radial, fabs(RADIUS_RATE(i, &g, rate)));
     }
     partial[2 * chunk] = precise_store(precise_from(modulus));
     partial[2 * chunk + 1] = precise_store(precise_from(radial));
+}
+
+__kernel void stiffness_rate(const clast_launch launch, __global exact *restrict partial PARTICLE_DECLARE)
+{
+    stiffness_rate_unit(get_global_id(0), &launch, partial PARTICLE_PASS);
 }

@@ -195,22 +195,22 @@ INLINE void table_count_near(int i, const table_grain *g, const int *near, int c
 
 /* Pairs owned by each grain, and slots each grain needs; both counts must be zero before. The first `room` partners of each grain are `kept`,
  * in any order, so that most grains need not be searched for twice. Of two grains of a level the first comes upon the second: a pair is seen once. */
-__kernel void table_count(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
-                          __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id,
-                          __global uint *restrict own_count, __global uint *restrict slot_count, __global int *restrict kept, const int room)
+BODY void table_count_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
+                           __global const uint *restrict cell_start, __global const exact *restrict position,
+                           __global const exact *restrict radius, __global const int *restrict id, __global uint *restrict own_count,
+                           __global uint *restrict slot_count, __global int *restrict kept, const int room)
 {
-    int i = get_global_id(0);
-    if (i >= launch.particle_count)
+    if (i >= launch->particle_count)
         return;
     table_grain g = table_grain_of(i, position, radius, id);
     real skin = number(grid->skin);
     int near[TABLE_NEAR_ROOM], count = 0;
-#define TABLE_MEET(j)                                                                                        \
-    near[count] = (int)(j);                                                                                  \
-    count += table_near(&launch, skin, &g, j, position, radius) ? 1 : 0;                                     \
-    if (count == TABLE_NEAR_ROOM) {                                                                          \
-        table_count_near(i, &g, near, count, radius, id, own_count, slot_count, kept, room);                 \
-        count = 0;                                                                                           \
+#define TABLE_MEET(j)                                                                        \
+    near[count] = (int)(j);                                                                  \
+    count += table_near(launch, skin, &g, j, position, radius) ? 1 : 0;                      \
+    if (count == TABLE_NEAR_ROOM) {                                                          \
+        table_count_near(i, &g, near, count, radius, id, own_count, slot_count, kept, room); \
+        count = 0;                                                                           \
     }
 #define TABLE_MEET_LATER(j) \
     if ((int)(j) > i) {     \
@@ -241,14 +241,21 @@ __kernel void table_count(const clast_launch launch, __global const clast_grid *
     table_count_near(i, &g, near, count, radius, id, own_count, slot_count, kept, room);
 }
 
-/* Writes the pairs of each grain, sorted by the partner's permanent id. */
-__kernel void table_fill(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
-                         __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id,
-                         __global const uint *restrict own_start, __global int *restrict owner, __global int *restrict other,
-                         __global const int *restrict kept, const int room)
+__kernel void table_count(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
+                          __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id,
+                          __global uint *restrict own_count, __global uint *restrict slot_count, __global int *restrict kept,
+                          const int room)
 {
-    int i = get_global_id(0);
-    if (i >= launch.particle_count)
+    table_count_unit(get_global_id(0), &launch, grid, cell_start, position, radius, id, own_count, slot_count, kept, room);
+}
+
+/* Writes the pairs of each grain, sorted by the partner's permanent id. */
+BODY void table_fill_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
+                          __global const uint *restrict cell_start, __global const exact *restrict position,
+                          __global const exact *restrict radius, __global const int *restrict id, __global const uint *restrict own_start,
+                          __global int *restrict owner, __global int *restrict other, __global const int *restrict kept, const int room)
+{
+    if (i >= launch->particle_count)
         return;
     table_grain g = table_grain_of(i, position, radius, id);
     real skin = number(grid->skin);
@@ -258,9 +265,9 @@ __kernel void table_fill(const clast_launch launch, __global const clast_grid *r
     for (; at > first && id[other[at - 1]] > id[j]; at--)           \
         other[at] = other[at - 1];                                  \
     other[at] = j
-#define TABLE_WRITE_OWNED(j)                                                                                       \
-    if ((int)(j) != i && table_owns(&g, j, radius, id) && table_near(&launch, skin, &g, j, position, radius)) {             \
-        TABLE_WRITE(j);                                                                                                     \
+#define TABLE_WRITE_OWNED(j)                                                                                   \
+    if ((int)(j) != i && table_owns(&g, j, radius, id) && table_near(launch, skin, &g, j, position, radius)) { \
+        TABLE_WRITE(j);                                                                                        \
     }
     int count = (int)(own_start[i + 1] - first);
     if (count <= room) {
@@ -276,6 +283,14 @@ __kernel void table_fill(const clast_launch launch, __global const clast_grid *r
     }
     for (uint a = first; a < k; a++)
         owner[a] = i;
+}
+
+__kernel void table_fill(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
+                         __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id,
+                         __global const uint *restrict own_start, __global int *restrict owner, __global int *restrict other,
+                         __global const int *restrict kept, const int room)
+{
+    table_fill_unit(get_global_id(0), &launch, grid, cell_start, position, radius, id, own_start, owner, other, kept, room);
 }
 
 /* Records that fill up a work-group, behind the pairs and behind the walls, name grain 0 twice. */
@@ -327,12 +342,11 @@ INLINE long table_partner(int entry, int wall_base, __global const int *restrict
     return id[entry > 0 ? other[k] : owner[k]];
 }
 
-__kernel void table_sort_slots(const clast_launch launch, __global const int *restrict owner, __global const int *restrict other,
-                               __global const int *restrict id, __global const uint *restrict slot_offset,
-                               __global const uint *restrict slot_count, __global int *restrict slots, const int wall_base)
+BODY void table_sort_slots_unit(int i, const clast_launch *launch, __global const int *restrict owner, __global const int *restrict other,
+                                __global const int *restrict id, __global const uint *restrict slot_offset,
+                                __global const uint *restrict slot_count, __global int *restrict slots, const int wall_base)
 {
-    int i = get_global_id(0);
-    if (i >= launch.particle_count)
+    if (i >= launch->particle_count)
         return;
     uint base = slot_offset[i / CLAST_BLOCK] + i % CLAST_BLOCK;
     for (uint a = 1; a < slot_count[i]; a++) {
@@ -343,6 +357,13 @@ __kernel void table_sort_slots(const clast_launch launch, __global const int *re
             slots[base + b * CLAST_BLOCK] = slots[base + (b - 1) * CLAST_BLOCK];
         slots[base + b * CLAST_BLOCK] = moved;
     }
+}
+
+__kernel void table_sort_slots(const clast_launch launch, __global const int *restrict owner, __global const int *restrict other,
+                               __global const int *restrict id, __global const uint *restrict slot_offset,
+                               __global const uint *restrict slot_count, __global int *restrict slots, const int wall_base)
+{
+    table_sort_slots_unit(get_global_id(0), &launch, owner, other, id, slot_offset, slot_count, slots, wall_base);
 }
 
 /* Of every block the first and the last record of a pair that its grains take part in, side by side; wall_base and -1: none. */

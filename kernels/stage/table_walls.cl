@@ -29,34 +29,50 @@ INLINE bool table_reaches(__global const clast_face *face, precise3 x, real reac
     return u < a + reach && v < number(face->extent[1]) + reach;
 }
 
-__kernel void table_count_walls(const clast_launch launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
-                                __global const exact *restrict radius, __global const clast_face *restrict faces, __global uint *restrict wall_count,
-                                __global uint *restrict slot_count)
+BODY void table_count_walls_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
+                                 __global const exact *restrict position, __global const exact *restrict radius,
+                                 __global const clast_face *restrict faces, __global uint *restrict wall_count,
+                                 __global uint *restrict slot_count)
 {
-    int i = get_global_id(0);
     uint found = 0;
-    if (i < launch.particle_count) {
+    if (i < launch->particle_count) {
         precise3 x = PRECISE_GRAIN3(position, i);
-        for (int f = 0; f < launch.face_count; f++)
+        for (int f = 0; f < launch->face_count; f++)
             found += table_reaches(faces + f, x, GRAIN_RADIUS(i) * (R(1.0) + number(grid->wall_share)) + number(grid->skin)) ? 1 : 0;
         slot_count[i] += found;
     }
     wall_count[i] = found;
 }
 
-__kernel void table_fill_walls(const clast_launch launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
-                               __global const exact *restrict radius, __global const clast_face *restrict faces,
-                               __global const uint *restrict wall_start, __global int *restrict owner, __global int *restrict other, const int wall_base)
+__kernel void table_count_walls(const clast_launch launch, __global const clast_grid *restrict grid,
+                                __global const exact *restrict position, __global const exact *restrict radius,
+                                __global const clast_face *restrict faces, __global uint *restrict wall_count,
+                                __global uint *restrict slot_count)
 {
-    int i = get_global_id(0);
-    if (i >= launch.particle_count)
+    table_count_walls_unit(get_global_id(0), &launch, grid, position, radius, faces, wall_count, slot_count);
+}
+
+BODY void table_fill_walls_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
+                                __global const exact *restrict position, __global const exact *restrict radius,
+                                __global const clast_face *restrict faces, __global const uint *restrict wall_start,
+                                __global int *restrict owner, __global int *restrict other, const int wall_base)
+{
+    if (i >= launch->particle_count)
         return;
     precise3 x = PRECISE_GRAIN3(position, i);
     uint k = wall_base + wall_start[i];
-    for (int f = 0; f < launch.face_count; f++)
+    for (int f = 0; f < launch->face_count; f++)
         if (table_reaches(faces + f, x, GRAIN_RADIUS(i) * (R(1.0) + number(grid->wall_share)) + number(grid->skin))) {
             owner[k] = i;
             other[k] = f;
             k++;
         }
+}
+
+__kernel void table_fill_walls(const clast_launch launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
+                               __global const exact *restrict radius, __global const clast_face *restrict faces,
+                               __global const uint *restrict wall_start, __global int *restrict owner, __global int *restrict other,
+                               const int wall_base)
+{
+    table_fill_walls_unit(get_global_id(0), &launch, grid, position, radius, faces, wall_start, owner, other, wall_base);
 }
