@@ -1,5 +1,6 @@
 #include "bench.h"
 
+#include "clock.h"
 #include "settled_bed.h"
 #include "simulation.h"
 
@@ -9,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #define WARM_UP_STEPS 200
@@ -27,13 +27,6 @@ typedef struct bench_figures {
     int streams, chunk_records, force_records;
     char device[1024];
 } bench_figures;
-
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 bench_options bench_options_default(void)
 {
@@ -132,10 +125,10 @@ static status time_steps(simulation *sim, int64_t steps, bench_figures *out, fai
 {
     TRY(simulation_advance(sim, WARM_UP_STEPS, why));
     int64_t rebuilds = sim->rebuilds;
-    double rebuilding = sim->rebuild_seconds, start = seconds();
+    double rebuilding = sim->rebuild_seconds, start = clock_seconds();
     TRY(simulation_advance(sim, steps, why));
     TRY_CL(clFinish(sim->device->queue), "waiting for the last step");
-    out->wall_s = seconds() - start;
+    out->wall_s = clock_seconds() - start;
     out->steps = steps;
     out->rebuilds = sim->rebuilds - rebuilds;
     out->rebuild_s = sim->rebuild_seconds - rebuilding;

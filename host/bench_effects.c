@@ -3,6 +3,7 @@
  * left out. The step is so short that the bed stays as it is: what a law does to the bed is not its cost. */
 #include "bench.h"
 #include "bench_scene.h"
+#include "clock.h"
 #include "laws/laws.h"
 #include "simulation.h"
 #include "traffic.h"
@@ -13,7 +14,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #define STILL_STEP_S 1.0e-9
@@ -58,13 +58,6 @@ typedef struct effects_bench {
     int passes;
     char device_text[1024];
 } effects_bench;
-
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static int by_value(const void *a, const void *b)
 {
@@ -249,7 +242,7 @@ static int64_t steps_of_sample(open_case *o, failure *why)
 static status run_rounds(bench_case *c, open_case *o, open_case *reference, double until, failure *why)
 {
     int64_t steps = steps_of_sample(o, why);
-    for (int round = 0; round < ROUNDS && (round < ROUNDS_LEAST || seconds() < until); round++) {
+    for (int round = 0; round < ROUNDS && (round < ROUNDS_LEAST || clock_seconds() < until); round++) {
         double mine = 0.0, theirs = 0.0;
         bool first = round % 2 == 0;
         if (first && reference)
@@ -335,10 +328,10 @@ static status run_pass(effects_bench *b, failure *why)
     kept_case kept = {.index = -1};
     status result = STATUS_OK;
     for (int n = 0; n < b->count && result == STATUS_OK; n++) {
-        double left = b->start + b->options->seconds - seconds();
+        double left = b->start + b->options->seconds - clock_seconds();
         if (b->cases[n].refused || b->cases[n].left_out)
             continue;
-        result = run_case(b, n, &kept, seconds() + left / (b->count - n), why);
+        result = run_case(b, n, &kept, clock_seconds() + left / (b->count - n), why);
         if (isatty(2))
             fprintf(stderr, "\rpass %d: %d of %d ", b->passes + 1, n + 1, b->count);
     }
@@ -352,13 +345,13 @@ static status run_pass(effects_bench *b, failure *why)
 static status run_passes(effects_bench *b, failure *why)
 {
     double last = 0.0;
-    b->start = seconds();
+    b->start = clock_seconds();
     do {
-        double start = seconds();
+        double start = clock_seconds();
         TRY(run_pass(b, why));
         b->passes++;
-        last = seconds() - start;
-    } while (b->passes < PASSES_MAX && seconds() + last < b->start + b->options->seconds);
+        last = clock_seconds() - start;
+    } while (b->passes < PASSES_MAX && clock_seconds() + last < b->start + b->options->seconds);
     return STATUS_OK;
 }
 

@@ -1,5 +1,6 @@
 #include "crew.h"
 
+#include "clock.h"
 #include "run.h"
 
 #include <errno.h>
@@ -11,7 +12,6 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 /* Grains up to which a run is small: it gains little from a second core. */
@@ -44,13 +44,6 @@ typedef struct member {
     double begun;
 } member;
 
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static void work(const crew *c, int index)
 {
     failure why = {{0}};
@@ -74,7 +67,7 @@ static void work(const crew *c, int index)
 static status start(const crew *c, member *m, int index, failure *why)
 {
     fflush(NULL);
-    m->begun = seconds();
+    m->begun = clock_seconds();
     m->child = fork();
     if (m->child < 0) {
         m->child = 0;
@@ -97,7 +90,7 @@ static bool note_end(const crew *c, member *m, pid_t child, int wait_status)
     for (int k = 0; k < c->count; k++)
         if (m[k].child == child) {
             m[k].child = 0;
-            c->ended(c->context, k, WIFEXITED(wait_status) ? (status)WEXITSTATUS(wait_status) : STATUS_ERROR, seconds() - m[k].begun);
+            c->ended(c->context, k, WIFEXITED(wait_status) ? (status)WEXITSTATUS(wait_status) : STATUS_ERROR, clock_seconds() - m[k].begun);
             return true;
         }
     return false;

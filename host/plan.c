@@ -1,5 +1,6 @@
 #include "plan.h"
 
+#include "clock.h"
 #include "frozen.h"
 #include "plan_data.h"
 
@@ -7,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define PROBE_WARM_UP 20
 #define PROBE_STEPS   200
@@ -16,13 +16,6 @@
  * other in two generations, match, and two slots in two generations. */
 #define PACKED_RECORDS     4.0
 #define TABLE_RECORD_BYTES 36.0
-
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 double plan_bytes_per_particle(const plan *p, uint64_t bytes)
 {
@@ -117,9 +110,9 @@ static status run_probe(simulation *sim, plan *out, failure *why)
     TRY(simulation_begin_stage(sim, 0, why));
     simulation_set_step(sim, out->stage[0].step_s);
     TRY(simulation_advance(sim, PROBE_WARM_UP, why));
-    double start = seconds();
+    double start = clock_seconds();
     TRY(simulation_advance(sim, PROBE_STEPS, why));
-    probe->wall_s = seconds() - start;
+    probe->wall_s = clock_seconds() - start;
     probe->done = true;
     probe->steps = PROBE_STEPS;
     probe->particle_steps_per_s = (double)out->particles * PROBE_STEPS / probe->wall_s;

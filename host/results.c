@@ -1,3 +1,4 @@
+#include "clock.h"
 #include "results_layout.h"
 #include "xdmf.h"
 
@@ -7,15 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/statvfs.h>
-#include <time.h>
 #include <unistd.h>
-
-static double wall_clock(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static void release(results *r)
 {
@@ -87,7 +80,7 @@ static results *prepare(const char *path, const results_spec *spec)
     r->pending_time = malloc(RESULTS_PENDING_MAX * sizeof *r->pending_time);
     r->pending_value = malloc(values * sizeof *r->pending_value);
     r->gathered = malloc(values * sizeof *r->gathered);
-    r->last_flush_s = wall_clock();
+    r->last_flush_s = clock_seconds();
     if (done && r->pending_step && r->pending_time && r->pending_value && r->gathered)
         return r;
     release(r);
@@ -112,10 +105,10 @@ static status enough_space(const results *r, failure *why)
 
 static status write_xdmf(results *r, failure *why)
 {
-    double start = wall_clock();
+    double start = clock_seconds();
     TRY(xdmf_write(r->xdmf_path, r->path, r->count, r->field_count, r->field, r->frames.step.rows, r->frame_time, why));
     r->xdmf_frames = r->frames.step.rows;
-    r->last_xdmf_s = wall_clock();
+    r->last_xdmf_s = clock_seconds();
     r->xdmf_cost_s = r->last_xdmf_s - start;
     return STATUS_OK;
 }
@@ -209,7 +202,7 @@ static status flush(results *r, failure *why)
 {
     TRY(write_samples(r, why));
     TRY(commit_file_flush(r->file, false, why));
-    r->last_flush_s = wall_clock();
+    r->last_flush_s = clock_seconds();
     return STATUS_OK;
 }
 
@@ -245,7 +238,7 @@ static status write_frame(results *r, int64_t step, double time, const void *con
 /* Writing all frames at every frame is quadratic: soon it may take no more than a twentieth of the time. */
 static bool xdmf_due(const results *r)
 {
-    double since = wall_clock() - r->last_xdmf_s;
+    double since = clock_seconds() - r->last_xdmf_s;
     if (r->frames.step.rows <= 100)
         return true;
     return since > 20.0 * r->xdmf_cost_s && (r->frames.step.rows <= 2000 || since > 5.0);
@@ -275,7 +268,7 @@ status results_observe(results *r, int64_t step, double time, const double *valu
         memcpy(r->pending_value + r->pending * r->observable_width, value, (size_t)r->observable_width * sizeof *value);
     r->pending++;
     status result = STATUS_OK;
-    if (wall_clock() - r->last_flush_s > 1.0)
+    if (clock_seconds() - r->last_flush_s > 1.0)
         result = flush(r, why);
     else if (r->pending == RESULTS_PENDING_MAX)
         result = write_samples(r, why);

@@ -1,4 +1,5 @@
 /* Runs a scene stage by stage: steps, looks between them, and what is written when. */
+#include "clock.h"
 #include "frozen.h"
 #include "run_parts.h"
 
@@ -189,9 +190,9 @@ static status write_due(run *r, failure *why)
 static status run_frozen_stage(run *r, failure *why)
 {
     while (!schedule_stage_over(&r->schedule, r->sim)) {
-        double start = run_seconds();
+        double start = clock_seconds();
         TRY(frozen_advance(r->sim, schedule_next_time(&r->schedule, r->sim), 1, why));
-        r->stepping += run_seconds() - start;
+        r->stepping += clock_seconds() - start;
         run_show_progress(r);
         TRY(write_due(r, why));
         if (interrupted)
@@ -208,10 +209,10 @@ static status run_stage(run *r, failure *why)
         while (steps > 0) {
             /* about half a second, so that a signal is heard */
             int64_t some = (double)steps > r->chunk_steps ? (int64_t)r->chunk_steps : steps;
-            double start = run_seconds();
+            double start = clock_seconds();
             TRY(simulation_advance(r->sim, some, why));
             steps -= some;
-            double spent = fmax(run_seconds() - start, 1e-6);
+            double spent = fmax(clock_seconds() - start, 1e-6);
             r->stepping += spent;
             r->chunk_steps = fmax(1.0, fmin(1e6, (double)some * 0.5 / spent));
             run_show_progress(r);
@@ -277,7 +278,7 @@ static status prepare(run *r, const run_options *options, const char *results_pa
 {
     r->quiet = options->quiet;
     r->terminal = isatty(STDERR_FILENO);
-    r->started = r->shown = run_seconds();
+    r->started = r->shown = clock_seconds();
     r->chunk_steps = 100;
     r->results_path = strdup(results_path);
     r->checkpoint_path = run_checkpoint_path(results_path);
@@ -351,8 +352,8 @@ static status begin_scene(run *r, const run_options *options, failure *why)
     TRY(output_observe(r->output, why));
     TRY(output_frame(r->output, why));
     run_tell(r, "%lld grains on %s, %.0f bytes each; first step after %.2f s", (long long)r->sim->id_count, r->device.info.name,
-         (double)r->sim->bytes / (double)r->sim->id_count, run_seconds() - r->started);
-    double first = run_seconds();
+         (double)r->sim->bytes / (double)r->sim->id_count, clock_seconds() - r->started);
+    double first = clock_seconds();
     TRY(run_stages(r, 0, why));
     if (options->report)
         *options->report = (run_report){r->sim->id_count, r->sim->step, r->stepping, first - r->started, r->sim->time};

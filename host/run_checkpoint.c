@@ -1,4 +1,5 @@
 /* The state of a run as a bundle: written as a checkpoint, and taken up again. */
+#include "clock.h"
 #include "run_parts.h"
 
 #include <stdlib.h>
@@ -57,12 +58,12 @@ status run_write_checkpoint(run *r, failure *why)
 /* Kept as often as it costs no more than a fiftieth of the run. */
 status run_keep_good_state(run *r, failure *why)
 {
-    double now = run_seconds();
+    double now = clock_seconds();
     if (r->good.count > 0 && now - r->good_at < 50.0 * r->good_cost)
         return STATUS_OK;
     bundle_free(&r->good);
     TRY(save_state(r, &r->good, why));
-    r->good_at = run_seconds();
+    r->good_at = clock_seconds();
     r->good_cost = r->good_at - now;
     return STATUS_OK;
 }

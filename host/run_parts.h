@@ -29,9 +29,6 @@ typedef struct run {
     int64_t first_step;
 } run;
 
-/* Wall clock. */
-double run_seconds(void);
-
 /* run_say.c: what goes to standard error */
 void run_tell(const run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void run_show_progress(run *r);

@@ -1,17 +1,10 @@
 /* What a run tells the user. */
+#include "clock.h"
 #include "run_parts.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <time.h>
-
-double run_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 void run_tell(const run *r, const char *format, ...)
 {
@@ -40,7 +33,7 @@ static double stage_share(const run *r)
 
 void run_show_progress(run *r)
 {
-    double now = run_seconds(), every = r->terminal ? 0.5 : 10.0;
+    double now = clock_seconds(), every = r->terminal ? 0.5 : 10.0;
     if (r->quiet || now - r->shown < every)
         return;
     r->shown = now;
@@ -57,7 +50,7 @@ void run_show_progress(run *r)
 void run_summarise(run *r)
 {
     const simulation *sim = r->sim;
-    double wall = run_seconds() - r->started;
+    double wall = clock_seconds() - r->started;
     int64_t steps = sim->step - r->first_step;
     char text[512];
     failure ignored;

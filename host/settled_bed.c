@@ -5,13 +5,13 @@
 
 #include "bundle.h"
 #include "cache.h"
+#include "clock.h"
 #include "simulation.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define CACHE_VERSION  1 /* counts on when beds of the same name would differ */
 
@@ -144,18 +144,11 @@ static status take_field(simulation *sim, const char *name, double (*out)[3], fa
     return STATUS_OK;
 }
 
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* The step follows the limit, which a falling and then loaded bed lowers. */
 static status settle(simulation *sim, failure *why)
 {
     particle_sums sums;
-    double start = seconds();
+    double start = clock_seconds();
     TRY(simulation_begin_stage(sim, 0, why));
     do {
         step_limit limit;
@@ -166,7 +159,7 @@ static status settle(simulation *sim, failure *why)
         if (!isfinite(sums.kinetic) || sim->count < sim->id_count)
             return fail(why, STATUS_ERROR, "the bed did not settle: its kinetic energy is %g J after %g s", sums.kinetic, sim->time);
     } while (sums.kinetic > REST * GRAVITY * sums.weight_radius && sim->time < SETTLE_MAX_S);
-    fprintf(stderr, "%lld grains came to rest after %.2f s, in %.1f s\n", (long long)sim->id_count, sim->time, seconds() - start);
+    fprintf(stderr, "%lld grains came to rest after %.2f s, in %.1f s\n", (long long)sim->id_count, sim->time, clock_seconds() - start);
     return STATUS_OK;
 }
 

@@ -225,10 +225,32 @@ status simulation_advance(simulation *sim, int64_t steps, failure *why);
 status simulation_count_leavers(simulation *sim, int64_t kept, failure *why);
 /* Displacements are measured against this velocity until the next table. */
 status simulation_choose_drift(simulation *sim, failure *why);
+/* Time after so many more steps, to the same bits whatever the batches. */
+double simulation_time_after(const simulation *sim, int64_t steps);
+
+/* body_rows.c: walls and prescribed motions */
+/* Rows for the steps of the batch to come. */
+status body_rows_write(simulation *sim, int rows, failure *why);
+/* How far a wall may have moved, against the common drift, since the table was built: an upper bound over what the bed can touch, m. */
+double body_rows_wall_travel(const simulation *sim, double time);
 /* A wall as it stands now, with what its servo has moved it. */
 body_pose simulation_wall_pose(const simulation *sim, int wall);
 /* Faces and movers for the step that starts at the present time, as row 0. */
 status simulation_pose_now(simulation *sim, failure *why);
+
+/* skin.c: unless the scene gives one */
+/* Before a table that grains ask for. */
+void skin_adapt(simulation *sim);
+/* A table that lasts long has too many pairs: a smaller skin may do. Says so by *rebuild. */
+status skin_look(simulation *sim, bool *rebuild, failure *why);
+
+/* heat_steps.c: heat that is advanced every n-th step */
+/* What temperatures advance by in step s of the batch to come, s; the same bits whatever the batches. */
+double heat_steps_span(const simulation *sim, int s);
+/* After a batch. */
+void heat_steps_note(simulation *sim, int done);
+/* At the end of a stage nothing may wait. */
+status heat_steps_end(simulation *sim, failure *why);
 
 /* store.c: arrays and kernels by name */
 status store_buffer(simulation *sim, cl_mem *mem, uint64_t bytes, const char *what, failure *why);

@@ -1,5 +1,6 @@
 /* The runs of a study: each in a process of its own, because a device may not be shared over a fork. */
 #include "bed.h"
+#include "clock.h"
 #include "crew.h"
 #include "device.h"
 #include "simulation.h"
@@ -10,18 +11,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #define PROBE_WARM_UP 20
 #define PROBE_STEPS   200
-
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* Settings of a run or a probe; the caller frees the list and, from base_count on, its strings. */
 char **study_sets(const study *s, const study_point *p, const study_probe *probe, int seed, int *count)
@@ -65,9 +58,9 @@ static status time_steps(simulation *sim, study_probe *probe, failure *why)
         return STATUS_OK;
     simulation_set_step(sim, step);
     TRY(simulation_advance(sim, PROBE_WARM_UP, why));
-    double start = seconds();
+    double start = clock_seconds();
     TRY(simulation_advance(sim, PROBE_STEPS, why));
-    probe->step_cost_s = (seconds() - start) / PROBE_STEPS;
+    probe->step_cost_s = (clock_seconds() - start) / PROBE_STEPS;
     return STATUS_OK;
 }
 

@@ -1,4 +1,5 @@
 /* The contact table on the device: see kernels/stage/table.cl. The host drives the launches and grows what is too small. */
+#include "clock.h"
 #include "laws/fields.h"
 #include "precision.h"
 #include "simulation.h"
@@ -6,7 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define SCAN_CHUNK 1024
 /* Numbers that one thread of a CPU sums up sooner than launches are made. */
@@ -21,13 +21,6 @@ enum { WORK_A, WORK_B, WORK_C, WORK_D, WORK_E };
 static int64_t round_up(int64_t value, int64_t step)
 {
     return (value + step - 1) / step * step;
-}
-
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 status table_create(simulation *sim, failure *why)
@@ -432,7 +425,7 @@ static status finish(simulation *sim, failure *why)
 status table_build(simulation *sim, bool drop_outside, failure *why)
 {
     contact_table *t = &sim->table;
-    double start = seconds();
+    double start = clock_seconds();
     int old_wall_base = t->old_wall_base = t->wall_base;
     int64_t old_stride = t->record_stride, old_capacity = t->record_capacity;
     TRY(bonds_before(sim, why));
@@ -458,7 +451,7 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
     TRY(fit_spare_generation(sim, old_capacity, why));
     TRY(bonds_after(sim, why));
     sim->rebuilds++;
-    sim->rebuild_seconds += seconds() - start;
+    sim->rebuild_seconds += clock_seconds() - start;
     return STATUS_OK;
 }
 

@@ -1,11 +1,11 @@
 #include "traffic.h"
 
+#include "clock.h"
 #include "program.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define SCAN_CHUNK 1024 /* kernels/stage/scan.cl */
 
@@ -203,13 +203,6 @@ field_sizes traffic_field_sizes(const simulation *sim)
 static const char copy_source[] = "__kernel void copy(__global const uint4 *restrict from, __global uint4 *restrict to)\n"
                                   "{\n    size_t i = get_global_id(0);\n    to[i] = from[i];\n}\n";
 
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static int by_value(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
@@ -221,11 +214,11 @@ static status time_copies(device *device, cl_kernel kernel, size_t items, double
     size_t local = CLAST_BLOCK;
     double taken[COPIES];
     for (int c = -2; c < COPIES; c++) {
-        double start = seconds();
+        double start = clock_seconds();
         TRY_CL(clEnqueueNDRangeKernel(device->queue, kernel, 1, NULL, &items, &local, 0, NULL, NULL), "a copy");
         TRY_CL(clFinish(device->queue), "a copy");
         if (c >= 0)
-            taken[c] = seconds() - start;
+            taken[c] = clock_seconds() - start;
     }
     qsort(taken, COPIES, sizeof *taken, by_value);
     *median = taken[COPIES / 2];
