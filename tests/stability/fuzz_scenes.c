@@ -1,6 +1,6 @@
 /* Random small scenes, put together from the descriptors of the laws: each keeps the invariants or is refused with a message.
  *
- *     fuzz_scenes [--seed S] [--structures N] [--sets M] [--seconds T] [--out DIR]     N choices of laws, shapes and precision, M sets of numbers each
+ *     fuzz_scenes [--seed S] [--structures N] [--sets M] [--seconds T] [--out DIR]     N choices of laws, shapes and precision, M sets of stages and numbers each
  *     fuzz_scenes SCENE.yaml...                                                         scenes from files, one by one
  *
  * A scene that fails is made smaller, line by line, as long as it fails in the same way, and is left in DIR (default: here) as fuzz-S.yaml.
@@ -14,7 +14,54 @@
 #include <string.h>
 #include <time.h>
 
+#define LAWS_MOST 128
+
 static device the_device;
+
+/* ---- what has been covered ---- */
+
+typedef struct coverage {
+    const law *law[LAWS_MOST];
+    int scenes[LAWS_MOST], count;
+    bool together[LAWS_MOST][LAWS_MOST];
+} coverage;
+
+static int place_of(coverage *c, const law *one)
+{
+    int k = 0;
+    while (k < c->count && c->law[k] != one)
+        k++;
+    if (k == LAWS_MOST)
+        abort();
+    if (k == c->count)
+        c->law[c->count++] = one;
+    return k;
+}
+
+static void cover(coverage *c, const outcome *o)
+{
+    for (int a = 0; a < SLOT_COUNT; a++) {
+        if (!o->law[a])
+            continue;
+        int p = place_of(c, o->law[a]);
+        c->scenes[p]++;
+        for (int b = 0; b < a; b++)
+            if (o->law[b])
+                c->together[p][place_of(c, o->law[b])] = c->together[place_of(c, o->law[b])][p] = true;
+    }
+}
+
+static void say_coverage(const coverage *c)
+{
+    int pairs = 0;
+    for (int a = 0; a < c->count; a++)
+        for (int b = 0; b < a; b++)
+            pairs += c->together[a][b];
+    printf("%d laws, %d pairs of laws; scenes with each:", c->count, pairs);
+    for (int k = 0; k < c->count; k++)
+        printf("%s %s.%s %d", k ? "," : "", slot_name(c->law[k]->slot), c->law[k]->name, c->scenes[k]);
+    printf("\n");
+}
 
 /* ---- making a failure smaller ---- */
 
@@ -52,7 +99,7 @@ static void write_scene(const char *folder, const char *name, const char *commen
     fclose(file);
 }
 
-static bool one_scene(uint64_t structure, uint64_t numbers, const char *folder, int counts[4])
+static bool one_scene(uint64_t structure, uint64_t numbers, const char *folder, int counts[4], coverage *covered)
 {
     lines t = {0};
     bool left[LINES_MAX];
@@ -61,6 +108,8 @@ static bool one_scene(uint64_t structure, uint64_t numbers, const char *folder, 
     write_scene(folder, "fuzz-running.yaml", "", text);
     outcome o = run_text(&the_device, text, "fuzz.yaml");
     counts[o.verdict]++;
+    if (o.verdict == KEPT)
+        cover(covered, &o);
     if (getenv("CLAST_FUZZ_SAYS") && o.verdict != KEPT)
         printf("%llu/%llu: %s\n", (unsigned long long)structure, (unsigned long long)numbers, o.text);
     if (o.verdict == BROKEN) {
@@ -101,6 +150,7 @@ int main(int argc, char **argv)
     double seconds = INFINITY;
     const char *folder = ".";
     int counts[4] = {0}, failed = 0, files = 0;
+    static coverage covered;
     setvbuf(stdout, NULL, _IOLBF, 0);
     if (device_open(NULL, true, &the_device, &why) != STATUS_OK) {
         fprintf(stderr, "%s\n", why.text);
@@ -126,9 +176,10 @@ int main(int argc, char **argv)
     time_t start = time(NULL);
     for (uint64_t s = seed; s < seed + structures && difftime(time(NULL), start) < seconds; s++)
         for (uint64_t n = 1; n <= sets && difftime(time(NULL), start) < seconds; n++)
-            failed += !one_scene(s, n, folder, counts);
+            failed += !one_scene(s, n, folder, counts, &covered);
     printf("%d scenes kept the invariants, %d were refused, %d were stopped by a guard, %d broke an invariant\n", counts[KEPT],
            counts[REFUSED], counts[STOPPED], counts[BROKEN]);
+    say_coverage(&covered);
     char running[4096];
     snprintf(running, sizeof running, "%s/fuzz-running.yaml", folder);
     remove(running);

@@ -226,8 +226,10 @@ outcome run_text(device *on, const char *text, const char *name)
     }
     if (result == STATUS_OK)
         result = simulation_create(c.scene, &c.bed, on, NULL, &c.sim, &why);
-    if (result == STATUS_OK)
+    if (result == STATUS_OK) {
+        memcpy(o.law, c.sim->all.law, sizeof o.law);
         result = run_stages(&c, &o, &why);
+    }
     if (result != STATUS_OK && o.verdict != BROKEN) {
         o.verdict = result == STATUS_BAD_INPUT ? REFUSED : STOPPED;
         snprintf(o.text, sizeof o.text, "%.1000s", why.text);

@@ -2,6 +2,7 @@
 #ifndef CLAST_TESTS_RANDOM_RUN_H
 #define CLAST_TESTS_RANDOM_RUN_H
 #include "device.h"
+#include "law.h"
 
 typedef enum verdict { KEPT, REFUSED, STOPPED, BROKEN } verdict;
 
@@ -9,6 +10,7 @@ typedef struct outcome {
     verdict verdict;
     char what[64]; /* the invariant */
     char text[1024];
+    const law *law[SLOT_COUNT]; /* that it ran with; NULL: none */
 } outcome;
 
 /* `text`: what a scene file holds. */

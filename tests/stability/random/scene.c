@@ -43,7 +43,7 @@ void lines_free(lines *t)
     t->count = 0;
 }
 
-/* `shape` decides laws, shapes and stages, `state` their numbers. */
+/* `shape` decides what the program is made of, laws and shapes; `state` decides stages, motions and numbers. */
 typedef struct world {
     lines *t;
     uint64_t shape, state;
@@ -148,10 +148,10 @@ static void put_matter(world *w)
 static const char *motion(world *w)
 {
     static char text[256];
-    if (chance(&w->shape, 0.6))
+    if (chance(&w->state, 0.6))
         snprintf(text, sizeof text, "[{type: sinusoid, direction: %s, amplitude_m: %.6g, frequency_hz: %.6g}]", place(w, 0.0, 0.0, 1.0),
                  decades(&w->state, -6.0, -3.3), decades(&w->state, 0.0, 2.0));
-    else if (chance(&w->shape, 0.5))
+    else if (chance(&w->state, 0.5))
         snprintf(text, sizeof text, "[{type: rotation, point_m: %s, axis: [0, %d, %d], rate_rad_s: %.6g}]", place(w, 0.005, 0.005, 0.001),
                  !w->flat, w->flat, uniform(&w->state, -50, 50));
     else
@@ -274,16 +274,16 @@ static void put_particles(world *w)
 
 static void put_change(world *w)
 {
-    if (w->plate && chance(&w->shape, 0.5))
+    if (w->plate && chance(&w->state, 0.5))
         put(w->t, "  - {name: other, until: {steps: %d}, change: {walls: [{name: plate, motion: %s}]}}", STEPS / 2, motion(w));
-    else if (w->lid && chance(&w->shape, 0.7))
+    else if (w->lid && chance(&w->state, 0.7))
         put(w->t, "  - {name: held, until: {steps: %d}, change: {walls: [{name: lid, servo: off}]}}", STEPS / 2);
-    else if (w->box && w->heat && chance(&w->shape, 0.5))
+    else if (w->box && w->heat && chance(&w->state, 0.5))
         put(w->t, "  - {name: hot, until: {steps: %d}, change: {walls: [{name: box, temperature_k: 700}]}}", STEPS / 2);
-    else if (w->two && chance(&w->shape, 0.4))
+    else if (w->two && chance(&w->state, 0.4))
         put(w->t, "  - {name: loose, until: {steps: %d}, change: {particles: [{name: g1, motion: %s}]}}", STEPS / 2,
-            chance(&w->shape, 0.5) ? "free" : "fixed");
-    else if (chance(&w->shape, 0.3))
+            chance(&w->state, 0.5) ? "free" : "fixed");
+    else if (chance(&w->state, 0.3))
         put(w->t,
             "  - {name: slippery, until: {steps: %d}, change: {interactions: [{between: default, friction_static: 0.01, rolling_friction: "
             "0}]}}",
@@ -301,10 +301,10 @@ static void put_stages(world *w)
         put(w->t, "  - {name: go, until: {steps: %d}, heat: {every_steps: %d}}", STEPS, 1 + below(&w->state, 20));
     else
         put(w->t, "  - {name: go, until: {steps: %d}}", STEPS);
-    bool frozen = w->heat && chance(&w->shape, 0.4);
+    bool frozen = w->heat && chance(&w->state, 0.4);
     if (frozen)
-        put(w->t, "  - {name: still, until: {time_s: 1.0e-3}, motion: frozen, heat: {method: %s}}", methods[below(&w->shape, 4)]);
-    if (chance(&w->shape, frozen ? 0.5 : 0.35))
+        put(w->t, "  - {name: still, until: {time_s: 1.0e-3}, motion: frozen, heat: {method: %s}}", methods[below(&w->state, 4)]);
+    if (chance(&w->state, frozen ? 0.5 : 0.35))
         put_change(w);
     slot_id without = off[below(&w->shape, 7)];
     if (chance(&w->shape, 0.4) && w->slot[without])

@@ -11,7 +11,7 @@ typedef struct lines {
     char *line[LINES_MAX];
 } lines;
 
-/* The scene of these laws, shapes and stages (`structure`: what decides the program) and of these numbers. */
+/* The scene of these laws and shapes (`structure`: what decides the program) and of these stages, motions and numbers (`numbers`). */
 void random_scene(uint64_t structure, uint64_t numbers, lines *t);
 /* The text without the lines that are left out (NULL: all); caller frees. */
 char *lines_join(const lines *t, const bool *left_out);
