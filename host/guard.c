@@ -68,18 +68,58 @@ static status check_grains(simulation *sim, guard_finding *out, failure *why)
     return STATUS_OK;
 }
 
+#define ACTS_THROUGH "the wall `%s` is less than a grain's radius away from the domain's periodic face along %c, and does not go on behind it: a grain there would " \
+                     "not feel it"
+
+/* Walls move: they are looked at again while a stage runs. */
+static void check_periodic_walls(simulation *sim, guard_finding *out)
+{
+    int wall;
+    char axis;
+    if (!guard_periodic_wall(sim, &wall, &axis))
+        return;
+    out->stop = true;
+    snprintf(out->text, sizeof out->text, "%s: stopped by a guard at t = %.9g s (step %lld): " ACTS_THROUGH "; let it move less far, or enlarge the domain",
+             sim->scene->path, sim->time, (long long)sim->step, sim->scene->wall[wall].name, axis);
+}
+
+static status name_overlap(simulation *sim, int64_t record, double most, guard_finding *out, failure *why)
+{
+    contact_table *t = &sim->table;
+    int32_t owner, other, id;
+    char what[256];
+    TRY(store_read(sim, t->owner[t->now], 4 * (uint64_t)record, sizeof owner, &owner, why));
+    TRY(store_read(sim, t->other[t->now], 4 * (uint64_t)record, sizeof other, &other, why));
+    TRY(id_at(sim, owner, &id, why));
+    if (record < t->wall_base) {
+        snprintf(what, sizeof what, "overlap of %.3g of its radius, overlap_max is %g", most, sim->scene->guards.overlap_max);
+        stop(sim, out, id, what, "try a smaller step, a stiffer material, or grains that do not overlap at the start");
+    } else {
+        snprintf(what, sizeof what, "it is %.3g of its radius deep in the wall `%s`, overlap_max is %g", most,
+                 sim->scene->wall[sim->face_rows[other].wall].name, sim->scene->guards.overlap_max);
+        stop(sim, out, id, what, "try a smaller step, a stiffer material, or a wall that presses less");
+    }
+    return STATUS_OK;
+}
+
 static status check_overlaps(simulation *sim, guard_finding *out, failure *why)
 {
     contact_table *t = &sim->table;
-    int64_t chunks = (t->pair_count + CHUNK - 1) / CHUNK;
+    int64_t pairs = (t->pair_count + CHUNK - 1) / CHUNK, chunks = pairs + (t->wall_record_count + CHUNK - 1) / CHUNK;
+    double most = 0.0, where = -1.0;
+    if (!sim->live.law[SLOT_NORMAL])
+        return STATUS_OK;
+    if (sim->face_count > 0) {
+        TRY(simulation_pose_now(sim, why));
+        check_periodic_walls(sim, out);
+    }
+    if (out->stop || chunks == 0)
+        return STATUS_OK;
     clast_launch launch = launch_values(sim);
     cl_kernel kernel = launch_kernel(sim, "guard_records");
-    double most = 0.0, where = -1.0;
-    if (chunks == 0 || !sim->live.law[SLOT_NORMAL])
-        return STATUS_OK;
     TRY(observe_partial(sim, 2 * chunks, why));
-    TRY(launch_set(kernel, "guard_records", why, "Lmmmmmi", &launch, t->owner[t->now], t->other[t->now], store_find(sim, "position")->mem,
-                   store_find(sim, "radius")->mem, sim->partial, (cl_int)t->pair_count));
+    TRY(launch_set(kernel, "guard_records", why, "Lmiii", &launch, sim->partial, (cl_int)t->pair_count, (cl_int)pairs, (cl_int)t->wall_record_count));
+    TRY(launch_bind(sim, "guard_records", 5, why));
     TRY(launch_run(sim, kernel, "guard_records", chunks, 1, why));
     double *found = malloc(sizeof *found * (size_t)(2 * chunks + 1));
     if (!found)
@@ -92,15 +132,7 @@ static status check_overlaps(simulation *sim, guard_finding *out, failure *why)
         }
     free(found);
     TRY(result);
-    if (most > sim->scene->guards.overlap_max) {
-        int32_t owner, id;
-        char what[256];
-        TRY(store_read(sim, t->owner[t->now], 4 * (uint64_t)where, sizeof owner, &owner, why));
-        TRY(id_at(sim, owner, &id, why));
-        snprintf(what, sizeof what, "overlap of %.3g of its radius, overlap_max is %g", most, sim->scene->guards.overlap_max);
-        stop(sim, out, id, what, "try a smaller step, a stiffer material, or grains that do not overlap at the start");
-    }
-    return STATUS_OK;
+    return most > sim->scene->guards.overlap_max ? name_overlap(sim, (int64_t)where, most, out, why) : STATUS_OK;
 }
 
 static status check_temperatures(simulation *sim, guard_finding *out, failure *why)
@@ -148,9 +180,24 @@ static double deepest(const simulation *sim, const live_contact *contact, int64_
     return most;
 }
 
+static status refuse_periodic_wall(simulation *sim, failure *why)
+{
+    int wall;
+    char axis;
+    if (sim->face_count == 0)
+        return STATUS_OK;
+    TRY(simulation_pose_now(sim, why));
+    if (!guard_periodic_wall(sim, &wall, &axis))
+        return STATUS_OK;
+    return fail(why, STATUS_BAD_INPUT, "%s: stage %s: " ACTS_THROUGH "; move it inside, let it span the domain along %c, or enlarge the domain",
+                sim->scene->path, sim->scene->stage[sim->stage].name, sim->scene->wall[wall].name, axis, axis);
+}
+
 status guard_walls(simulation *sim, failure *why)
 {
     const scene *s = sim->scene;
+    if (sim->live.law[SLOT_NORMAL] && !sim->live.frozen)
+        TRY(refuse_periodic_wall(sim, why));
     live_contact *contact = NULL;
     const live_contact *which = NULL;
     double *radius = NULL;

@@ -27,6 +27,7 @@ static const stage_list stage_lists[] = {
     {"observe_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"heat_areas", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"heat_conductances", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
+    {"guard_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"limit_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"particle_stage", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"particle_synchronise", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},

@@ -14,7 +14,7 @@ static const parameter domain_rows[] = {
     {.key = "low_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, AT(domain, low_m), .doc = "lower corner"},
     {.key = "high_m", .type = PARAMETER_VECTOR, .unit = "m", .required = true, AT(domain, high_m), .doc = "upper corner"},
     {.key = "periodic", .type = PARAMETER_FLAGS, .choices = "x|y|z", AT(domain, periodic), .shown = "[]",
-     .doc = "directions in which the domain repeats"},
+     .doc = "directions in which the domain repeats; walls do not: each goes on along the whole of such a direction, or keeps a grain's radius away from its ends"},
     {.key = "leaving", .type = PARAMETER_CHOICE, .choices = "stop|delete", .fallback = "stop", AT(domain, delete_leaving), .as_flag = true,
      .doc = "what happens when a particle leaves the domain: the run stops, or the particle is deleted and counted"},
     {0},

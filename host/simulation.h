@@ -475,8 +475,11 @@ typedef struct guard_finding {
     char text[1024];
 } guard_finding;
 status guard_check(simulation *sim, guard_finding *out, failure *why);
-/* Refuses a stage that begins with a free grain deeper in a wall than guards.overlap_max, which would be shot out. */
+/* Refuses a stage that begins with a free grain deeper in a wall than guards.overlap_max, which would be shot out, or with a wall that would act
+ * through a periodic face of the domain. */
 status guard_walls(simulation *sim, failure *why);
+/* True, and which wall and axis (x, y, z), where as walls now stand one is so near a periodic face that a grain on the other side would touch it. */
+bool guard_periodic_wall(const simulation *sim, int *wall, char *axis);
 
 /* state.c */
 /* Everything needed to go on bit for bit, into a bundle; and back into a simulation made from the same scene. */

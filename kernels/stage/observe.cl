@@ -355,20 +355,36 @@ __kernel void guard_particles(const clast_launch launch, __global const exact *r
     guard_particles_unit(get_global_id(0), &launch, position, velocity, partial, bounded);
 }
 
-/* Per chunk of records the largest overlap over the smaller radius, and its record. Geometry only: cheap, and touches no field. */
-BODY void guard_records_unit(int chunk, const clast_launch *launch, __global const int *restrict owner, __global const int *restrict other,
-                             __global const exact *restrict position, __global const exact *restrict radius,
-                             __global exact *restrict partial, const int pair_count)
+INLINE real guard_of_pair(const clast_launch *launch, int k PAIR_DECLARE)
 {
-    int first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, pair_count);
+    int i = owner[k], j = other[k];
+    apart3 d = periodic_nearest(launch, apart_of(PRECISE_GRAIN3(position, j), PRECISE_GRAIN3(position, i)));
+    precise radius_i = precise_load(radius[i]), radius_j = precise_load(radius[j]);
+    real smaller = fmin(rounded(radius_i), rounded(radius_j)), distance = sqrt(dot3(apart_vector(d), apart_vector(d)));
+    return sphere_overlap(d, distance, radius_i, radius_j) / smaller;
+}
+
+/* A grain that is held may stand in a wall. */
+INLINE real guard_of_wall(const clast_launch *launch, int k PAIR_DECLARE)
+{
+    contact c;
+    wall_touch touch;
+    contact_of_wall(launch, k, &c, &touch PAIR_PASS);
+    return c.overlap / c.radius_i;
+}
+
+/* Per chunk of records the largest overlap over the smaller radius, and its record; chunks of pairs first, those of walls behind them.
+ * Geometry only: cheap, and touches no field. */
+BODY void guard_records_unit(int chunk, const clast_launch *launch, __global exact *restrict partial, const int pair_count, const int pair_chunks,
+                             const int wall_count PAIR_DECLARE)
+{
+    bool walls = chunk >= pair_chunks;
+    int first = walls ? launch->first_wall_place + (chunk - pair_chunks) * OBSERVE_CHUNK : chunk * OBSERVE_CHUNK;
+    int end = min(first + OBSERVE_CHUNK, walls ? launch->first_wall_place + wall_count : pair_count);
     real most = R(0.0);
     int where = -1;
     for (int k = first; k < end; k++) {
-        int i = owner[k], j = other[k];
-        apart3 d = periodic_nearest(launch, apart_of(PRECISE_GRAIN3(position, j), PRECISE_GRAIN3(position, i)));
-        precise radius_i = precise_load(radius[i]), radius_j = precise_load(radius[j]);
-        real smaller = fmin(rounded(radius_i), rounded(radius_j)), distance = sqrt(dot3(apart_vector(d), apart_vector(d)));
-        real ratio = sphere_overlap(d, distance, radius_i, radius_j) / smaller;
+        real ratio = walls ? guard_of_wall(launch, k PAIR_PASS) : guard_of_pair(launch, k PAIR_PASS);
         if (ratio > most) {
             most = ratio;
             where = k;
@@ -378,9 +394,8 @@ BODY void guard_records_unit(int chunk, const clast_launch *launch, __global con
     partial[2 * chunk + 1] = precise_store(precise_from_int(where));
 }
 
-__kernel void guard_records(const clast_launch launch, __global const int *restrict owner, __global const int *restrict other,
-                            __global const exact *restrict position, __global const exact *restrict radius,
-                            __global exact *restrict partial, const int pair_count)
+__kernel void guard_records(const clast_launch launch, __global exact *restrict partial, const int pair_count, const int pair_chunks,
+                            const int wall_count PAIR_DECLARE)
 {
-    guard_records_unit(get_global_id(0), &launch, owner, other, position, radius, partial, pair_count);
+    guard_records_unit(get_global_id(0), &launch, partial, pair_count, pair_chunks, wall_count PAIR_PASS);
 }

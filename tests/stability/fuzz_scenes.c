@@ -65,13 +65,16 @@ static void say_coverage(const coverage *c)
 
 /* ---- making a failure smaller ---- */
 
+#define SHRINK_SECONDS 120.0 /* each try may have a program to compile */
+
 static void shrink(const lines *t, const char *what, bool *left)
 {
     bool smaller = true;
+    time_t begun = time(NULL);
     memset(left, 0, sizeof(bool) * LINES_MAX);
     while (smaller) {
         smaller = false;
-        for (int k = t->count - 1; k >= 0; k--) {
+        for (int k = t->count - 1; k >= 0 && difftime(time(NULL), begun) < SHRINK_SECONDS; k--) {
             if (left[k])
                 continue;
             left[k] = true;

@@ -100,6 +100,44 @@ class Guards(unittest.TestCase):
         self.assertEqual(self.run_scene(scene((0, 0, 0), more=floor), "--set", "guards.overlap_max=0.6").returncode, OK)
         self.assertEqual(self.run_scene(scene((0, 0, 0), more=floor), "--set", "particles[grains].motion=fixed").returncode, OK)
 
+    def test_grain_pressed_through_a_wall(self):
+        """Two grains, one of them which ends deep in the floor."""
+        floor = "walls: [{name: far, shape: plane, point_m: [-1, 0, 0], normal: [1, 0, 0]}, {name: floor, shape: plane, point_m: [0, 0, -1.2e-3], normal: [0, 0, 1]}]\n"
+        text = scene((0, 0, 0), (0.01, 0, 0), more=floor + "guards: {every_steps: 5, move_max: 1.0e6}\n").replace("step_s: 1.0e-5", "step_s: 1.0e-6")
+        down = text.replace("position_m: [0.01, 0, 0], radius_m: 1.0e-3, velocity_m_s: [0, 0, 0]", "position_m: [0.01, 0, 0], radius_m: 1.0e-3, velocity_m_s: [0, 0, -30]")
+        self.assertNotEqual(text, down)
+        last = self.stopped(down, "grain 1: it is 0.3", "of its radius deep in the wall `floor`, overlap_max is 0.3", "stiffer material")
+        self.assertIn("t = 2e-05 s", last)  # 0.2 mm to the floor take 6.7 us, 0.3 mm into it 10 us more: 16.7 us, looked at every 5 us
+        self.assertEqual(self.run_scene(text).returncode, OK)
+        held = down.replace("material: glass, generator", "material: glass, motion: [{type: constant, velocity_m_s: [0, 0, -30]}], generator").replace("time_s: 0.02", "time_s: 5.0e-5")
+        self.assertEqual(self.run_scene(held).returncode, OK)  # what is moved as prescribed may go through a wall
+
+    def test_walls_do_not_repeat(self):
+        """A wall that acts through a periodic face, on grains that do not see it, is refused, or stops the run where it comes there."""
+        domain = "domain: {low_m: [0, 0, 0], high_m: [0.01, 0.01, 0.01], periodic: [x, y, z]}\n"
+        disc = domain + "walls: [{name: plate, shape: disc, center_m: [0.005, 0.005, HEIGHT], radius_m: 2.0e-3, normal: [0, 0, 1]MOTION}]\n"
+        for wall, code in (("0.0009", BAD_INPUT), ("0.0011", OK), ("0.0091", BAD_INPUT), ("0.0089", OK)):
+            done = self.run_scene(scene((0.001, 0.008, 0), (0.008, 0.006, 0), more=disc.replace("HEIGHT", wall).replace("MOTION", "")), "--set", "stages[go].until.time_s=1.0e-5")
+            self.assertEqual(done.returncode, code, done.stderr)
+            if code == BAD_INPUT:
+                self.assertIn("stage go: the wall `plate` is less than a grain's radius away from the domain's periodic face along z", done.stderr)
+        moving = disc.replace("HEIGHT", "0.0025").replace("MOTION", ", motion: [{type: constant, velocity_m_s: [0, 0, -0.3]}]")
+        moving = moving.replace("0.005, 0.005", "0.005, 0.002").replace("2.0e-3", "0.9e-3")
+        last = self.stopped(scene((0.001, 0.008, 0), (0.008, 0.006, 0), more=moving), "the wall `plate` is less than", "face along z", "move less far")
+        self.assertIn("t = 0.006 s", last)  # 1.5 mm take 5 ms, looked at every ms
+        plane = domain + "walls: [{name: slope, shape: plane, point_m: [0.005, 0.005, 0.005], normal: [1, 0, 5]}]\n"
+        self.assertEqual(self.run_scene(scene((0.001, 0.008, 0), more=plane)).returncode, BAD_INPUT)
+        spans = domain.replace("[x, y, z]", "[x, y]") + """walls:
+  - {name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}
+  - {name: shelf, shape: rectangle, corners_m: [[0, 0.005, 0.004], [0.01, 0.005, 0.004], [0, 0.007, 0.004]]}
+  - {name: bar, shape: cylinder, side: outside, axis_point_m: [0.005, 0, 0.002], axis: [0, 1, 0], radius_m: 5.0e-4, length_m: 0.01}
+"""
+        grain = scene((0.001, 0.008, 0), more=spans).replace("time_s: 0.02", "time_s: 1.0e-5")
+        self.assertEqual(self.run_scene(grain).returncode, OK)
+        done = self.run_scene(grain.replace("[0.01, 0.005, 0.004]", "[0.0099, 0.005, 0.004]"))
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        self.assertIn("wall `shelf`", done.stderr)
+
     def test_move(self):
         # the wall, far away, holds the frame: without one, moves count against the bed's common velocity
         wall = "walls: [{name: far, shape: plane, point_m: [-5, 0, 0], normal: [1, 0, 0]}]\n"

@@ -177,20 +177,21 @@ static void put_round(world *w)
 /* Obstacles under the grains. */
 static void put_obstacles(world *w)
 {
+    double up = w->periodic == EVERYWHERE ? 0.005 : 0.001; /* clear of the domain's lower face where that is periodic */
     if (w->plate && w->flat)
         put(w->t,
-            "  - {name: plate, shape: rectangle, corners_m: [[0.003, 0.001, -0.01], [0.007, 0.001, -0.01], [0.003, 0.001, 0.01]], motion: "
+            "  - {name: plate, shape: rectangle, corners_m: [[0.003, %g, -0.01], [0.007, %g, -0.01], [0.003, %g, 0.01]], motion: "
             "%s}",
-            motion(w));
+            up, up, up, motion(w));
     else if (w->plate)
-        put(w->t, "  - {name: plate, shape: disc, center_m: [0.005, 0.005, 0.001], radius_m: 0.003, normal: [0, 0.2, 1], motion: %s}",
+        put(w->t, "  - {name: plate, shape: disc, center_m: [0.005, 0.005, %g], radius_m: 0.003, normal: [0, 0.2, 1], motion: %s}", up,
             motion(w));
     bool peg = chance(&w->shape, 0.25);
     if (peg)
-        put(w->t, "  - {name: peg, shape: cylinder, side: outside, axis_point_m: %s, axis: [0, %d, %d], radius_m: 1.0e-3, length_m: 0.02}",
-            w->flat ? "[0.005, 0.001, -0.01]" : "[0.005, -0.005, 0.001]", !w->flat, w->flat);
+        put(w->t, "  - {name: peg, shape: cylinder, side: outside, axis_point_m: [0.005, %g, %g], axis: [0, %d, %d], radius_m: 1.0e-3, length_m: 0.02}",
+            w->flat ? up : -0.005, w->flat ? -0.01 : up, !w->flat, w->flat);
     if (w->plate || peg)
-        w->low = fmax(w->low, 0.0021);
+        w->low = fmax(w->low, up + 0.0011);
 }
 
 static void put_walls(world *w)
