@@ -2,6 +2,10 @@
 #define TEMPERATURE_PAIR_FIELDS(READ, WRITE)
 #define TEMPERATURE_PARTICLE_FIELDS(READ, WRITE)
 #define TEMPERATURE_OF_BODY(i) R(0.0)
+#define TEMPERATURE_ROWS 0
+#define TEMPERATURE_ROWS_FILL(i, to)
+#define TEMPERATURE_OF_ROWS(rows, n, lane) R(0.0)
+#define TEMPERATURE_ASK_FOR(i)
 #define TEMPERATURE_OF_GRAIN(i) R(0.0)
 #define TEMPERATURE_PRECISE(i) precise_from(R(0.0))
 #define TEMPERATURE_CONSTANTS(row) ((__global const real *)0)

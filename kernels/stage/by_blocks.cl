@@ -14,7 +14,8 @@
 #define ROW_VELOCITY (ROW_MASS + 1)
 #define ROW_SPIN (ROW_VELOCITY + 3)
 #define ROW_PAST (ROW_SPIN + ROTATION_ROWS)
-#define ROWS_OF_GRAIN (ROW_PAST + INTEGRATOR_ROWS)
+#define ROW_TEMPERATURE (ROW_PAST + INTEGRATOR_ROWS)
+#define ROWS_OF_GRAIN (ROW_TEMPERATURE + TEMPERATURE_ROWS)
 
 #define ROW(rows, n) ((rows) + (n) * CLAST_BLOCK)
 #define ROW_NUMBER(rows, n, lane) (rows)[(n) * CLAST_BLOCK + (lane)]
@@ -55,6 +56,13 @@ INLINE void rows_vec3(__global const exact *field, int4 i, real *to)
     row_rounded(z, ROW(to, 2));
 }
 
+/* A row of numbers, one a grain. */
+INLINE void rows_number(__global const exact *field, int4 i, real *to)
+{
+    __global const ulong *from = (__global const ulong *)field;
+    row_rounded((ulong4)(from[i.s0], from[i.s1], from[i.s2], from[i.s3]), to);
+}
+
 /* Three numbers with all their bits. */
 INLINE void rows_exact3(__global const exact *field, int4 i, real *to)
 {
@@ -75,6 +83,7 @@ INLINE void rows_fill(int4 i, real *to PAIR_DECLARE)
     rows_vec3(velocity, i, ROW(to, ROW_VELOCITY));
     ROTATION_ROWS_FILL(i, ROW(to, ROW_SPIN));
     INTEGRATOR_ROWS_FILL(i, ROW(to, ROW_PAST));
+    TEMPERATURE_ROWS_FILL(i, ROW(to, ROW_TEMPERATURE));
 }
 
 INLINE void sphere_of_rows(const real *rows, int lane, sphere *s)
@@ -86,6 +95,7 @@ INLINE void sphere_of_rows(const real *rows, int lane, sphere *s)
     s->spin = ROTATION_OF_ROWS(rows, ROW_SPIN, lane);
     s->past_velocity = INTEGRATOR_VELOCITY_OF_ROWS(rows, ROW_PAST, lane, s->velocity);
     s->past_spin = INTEGRATOR_SPIN_OF_ROWS(rows, ROW_PAST + 3, lane, s->spin);
+    s->temperature = TEMPERATURE_OF_ROWS(rows, ROW_TEMPERATURE, lane);
 }
 
 INLINE void pair_of_rows(const clast_launch *launch, const real *owners, const real *others, int lane, int k PAIR_DECLARE)
@@ -110,6 +120,7 @@ INLINE void pair_ask_ahead(int k PAIR_DECLARE)
         ASK_FOR(mass + j);
         ROTATION_ASK_FOR(j);
         INTEGRATOR_ASK_FOR(j);
+        TEMPERATURE_ASK_FOR(j);
     }
 }
 

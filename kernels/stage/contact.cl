@@ -31,7 +31,7 @@ typedef struct sphere {
     precise3 position;
     precise radius;
     vec3 velocity, past_velocity, spin, past_spin;
-    real mass;
+    real mass, temperature;
 } sphere;
 
 INLINE void sphere_load(const clast_launch *launch, int i, sphere *s PAIR_DECLARE)
@@ -43,6 +43,7 @@ INLINE void sphere_load(const clast_launch *launch, int i, sphere *s PAIR_DECLAR
     s->spin = ROTATION_LOAD(launch, i);
     s->past_spin = INTEGRATOR_PAST_SPIN(i, s->spin);
     s->mass = mass[i];
+    s->temperature = TEMPERATURE_OF_BODY(i);
 }
 
 INLINE void contact_of_spheres(const clast_launch *launch, int i, int j, const sphere *s_i, const sphere *s_j, contact *c PAIR_DECLARE)
@@ -79,8 +80,8 @@ INLINE void contact_of_spheres(const clast_launch *launch, int i, int j, const s
     overlap = apart && overlap > R(0.0) ? overlap : R(0.0);
     c->touch = overlap;
     c->overlap = motion_overlap(MOTION_GRAIN(i), MOTION_GRAIN(j), overlap);
-    c->temperature_i = TEMPERATURE_OF_BODY(i);
-    c->temperature_j = TEMPERATURE_OF_BODY(j);
+    c->temperature_i = s_i->temperature;
+    c->temperature_j = s_j->temperature;
     c->n = scale(inverse, d);
     c->radius_eff = c->radius_i * c->radius_j * (both * mass_sum);
     c->mass_eff = c->mass_i * c->mass_j * (both * sum);
