@@ -219,7 +219,7 @@ status launch_open(simulation *sim, failure *why)
     define_device(sim, table_constants, sizeof table_constants);
     define_device(sim, constants, sizeof constants);
     int count = live_files(&sim->live, files, FILES_MAX - 1);
-    if (step_loop_wanted(sim))
+    if (step_loop_in_program(sim))
         files[count++] = "stage/step_loop.cl";
     TRY(open_program(sim, constants, files, count, &sim->program, why));
     TRY(open_program(sim, table_constants, table_files, live_table_files(&sim->live, table_files), &sim->table_program, why));

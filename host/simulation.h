@@ -305,7 +305,9 @@ status launch_set_from(cl_kernel kernel, const char *name, cl_uint first, failur
 clast_launch launch_of_step(const simulation *sim, int s, int bond_step);
 
 /* step_loop.c: many steps in one launch */
-/* True where the scene's programs are to have the kernel. */
+/* True where the text of the kernel is in the scene's program: on a CPU whichever form the scene asks for, so that all forms have one program. */
+bool step_loop_in_program(const simulation *sim);
+/* True where the scene is to have the kernel. */
 bool step_loop_wanted(const simulation *sim);
 /* True where the batch to come takes that form. */
 bool step_loop_now(const simulation *sim);

@@ -37,10 +37,20 @@ static int records_alone(const simulation *sim)
 
 /* Where walls give a heat flow, their areas are summed in a launch of its own between the two stages; where they keep a force, a launch of its own
  * behind them moves them. */
+static bool launches_between(const simulation *sim)
+{
+    return sim->live.law[SLOT_WALL_HEAT] == &law_wall_flux || sim->live.servo;
+}
+
+bool step_loop_in_program(const simulation *sim)
+{
+    return step_loop_wanted(sim) || (sim->live.blocks && !launches_between(sim));
+}
+
 bool step_loop_wanted(const simulation *sim)
 {
     step_form form = sim->scene->table.step_form;
-    if (sim->live.law[SLOT_WALL_HEAT] == &law_wall_flux || sim->live.servo || form == STEP_TWO_KERNELS)
+    if (launches_between(sim) || form == STEP_TWO_KERNELS)
         return false;
     return form != STEP_AUTO || sim->live.blocks || sim->id_count <= records_alone(sim);
 }

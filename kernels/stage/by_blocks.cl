@@ -151,20 +151,22 @@ INLINE void pair_wall_block(const clast_launch *launch, int group PAIR_DECLARE)
         pair_of_wall(launch, CLAST_BLOCK * group + lane PAIR_PASS);
 }
 
-BODY void pair_unit(const clast_launch *given, int group PAIR_DECLARE)
+/* Work-groups of records from..to of those that start at the launch's first; walls' are given a copy, so that the other is nobody else's. */
+BODY void pair_blocks(const clast_launch *given, const clast_launch *for_walls, int from, int to PAIR_DECLARE)
 {
-    const clast_launch own = *given, *launch = &own; /* known to be nobody else's */
-    if (group < launch->first_wall_group)
-        pair_block(launch, group PAIR_PASS);
-    else
-        pair_wall_block(given, group PAIR_PASS);
+    const clast_launch own = *given, *launch = &own;
+    for (int group = launch->first_group + from; group < launch->first_group + to; group++)
+        if (group < launch->first_wall_group)
+            pair_block(launch, group PAIR_PASS);
+        else
+            pair_wall_block(for_walls, group PAIR_PASS);
 }
 
 __kernel void pair_stage(const clast_launch launch, __global const clast_control *restrict control PAIR_DECLARE)
 {
-    if (control->halt_step <= launch.step)
-        return;
-    pair_unit(&launch, launch.first_group + (int)get_global_id(0) PAIR_PASS);
+    int at = get_global_id(0);
+    if (control->halt_step > launch.step)
+        pair_blocks(&launch, &launch, at, at + 1 PAIR_PASS);
 }
 
 /* A kernel that calls one(launch, k, wall) for every record: a work-group's records by its first item. */
@@ -246,17 +248,19 @@ INLINE void particle_block(const clast_launch *launch, __global clast_control *c
         particle_halt(launch, control);
 }
 
-BODY void particle_unit(const clast_launch *given, __global clast_control *control, int first PARTICLE_DECLARE)
+/* Units from..to of grains. */
+BODY void particle_blocks(const clast_launch *given, __global clast_control *control, int from, int to PARTICLE_DECLARE)
 {
-    const clast_launch own = *given;
-    particle_block(&own, control, first PARTICLE_PASS);
+    const clast_launch own = *given, *launch = &own;
+    for (int unit = from; unit < to; unit++)
+        particle_block(launch, control, CLAST_BLOCK * launch->first_group + PARTICLE_LANES * unit PARTICLE_PASS);
 }
 
 __kernel void particle_stage(const clast_launch launch, __global clast_control *restrict control PARTICLE_DECLARE)
 {
-    if (control->halt_step <= launch.step)
-        return;
-    particle_unit(&launch, control, CLAST_BLOCK * launch.first_group + PARTICLE_LANES * (int)get_global_id(0) PARTICLE_PASS);
+    int at = get_global_id(0);
+    if (control->halt_step > launch.step)
+        particle_blocks(&launch, control, at, at + 1 PARTICLE_PASS);
 }
 
 /* ---- a team ---- */
@@ -375,21 +379,14 @@ INLINE team_share team_share_of(__global const clast_phases *phases, __global co
     return share;
 }
 
-BODY void team_pairs(const team_member *me, const clast_launch *given, const clast_launch *for_walls, int from, int to PAIR_DECLARE)
+INLINE void team_pairs(const team_member *me, const clast_launch *launch, const clast_launch *for_walls, int from, int to PAIR_DECLARE)
 {
-    const clast_launch own = *given, *launch = &own; /* known to be nobody else's */
     (void)me;
-    for (int group = launch->first_group + from; group < launch->first_group + to; group++)
-        if (group < launch->first_wall_group)
-            pair_block(launch, group PAIR_PASS);
-        else
-            pair_wall_block(for_walls, group PAIR_PASS);
+    pair_blocks(launch, for_walls, from, to PAIR_PASS);
 }
 
-BODY void team_grains(const team_member *me, const clast_launch *given, __global clast_control *control, int from, int to PARTICLE_DECLARE)
+INLINE void team_grains(const team_member *me, const clast_launch *launch, __global clast_control *control, int from, int to PARTICLE_DECLARE)
 {
-    const clast_launch own = *given, *launch = &own;
     (void)me;
-    for (int unit = from; unit < to; unit++)
-        particle_block(launch, control, CLAST_BLOCK * launch->first_group + PARTICLE_LANES * unit PARTICLE_PASS);
+    particle_blocks(launch, control, from, to PARTICLE_PASS);
 }

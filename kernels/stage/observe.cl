@@ -173,7 +173,7 @@ INLINE void limit_contact(limit_block *b, vec3 n, real normal, real tangential, 
     b->twist = add_scaled(b->twist, R(1.58113883008418967) * tangential, n);
 }
 
-INLINE real limit_largest(const limit_block *b)
+OUTLINE real limit_largest(const limit_block *b)
 {
     real move = limit_eigenvalue(&b->move), turn = limit_eigenvalue(&b->turn), apart = R(0.5) * (move - turn);
     return R(0.5) * (move + turn) + sqrt(apart * apart + dot3(b->twist, b->twist));

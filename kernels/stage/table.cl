@@ -178,7 +178,7 @@ INLINE int table_beside(int c, int cells)
 #define TABLE_NEAR_ROOM 32
 
 /* Counts the pairs of i with those that are `near`, and keeps each with its owner where there is room. */
-INLINE void table_count_near(int i, const table_grain *g, const int *near, int count, __global const exact *restrict radius, __global const int *restrict id,
+OUTLINE void table_count_near(int i, const table_grain *g, const int *near, int count, __global const exact *restrict radius, __global const int *restrict id,
                              __global uint *restrict own_count, __global uint *restrict slot_count, __global int *restrict kept, int room)
 {
     for (int n = 0; n < count; n++) {
