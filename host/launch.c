@@ -224,8 +224,8 @@ status launch_open(simulation *sim, failure *why)
     TRY(open_program(sim, constants, files, count, &sim->program, why));
     TRY(open_program(sim, table_constants, table_files, live_table_files(&sim->live, table_files), &sim->table_program, why));
     static const char *const names[] = {"pair_stage",       "pair_probe",      "particle_stage",    "scan_chunks",       "scan_sums",
-                                        "scan_write",       "scan_whole",       "table_bin",       "table_order",       "table_order_cells", "table_permute_real", "table_permute_exact",
-                                        "table_permute_int", "table_count",    "table_fill",        "table_pad",         "table_widths",
+                                        "scan_write",       "scan_whole",       "table_bin",       "table_order",       "table_order_cells", "table_permute",
+                                        "table_count",    "table_fill",        "table_pad",         "table_widths",
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
                                         "table_last_records", "table_releases", "table_place",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",

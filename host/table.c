@@ -194,40 +194,29 @@ static status sort_grains(simulation *sim, const clast_launch *launch, failure *
     return STATUS_OK;
 }
 
-/* By way of the positions at the last table, which are written anew in the end, and an orientation, of four, by way of twice its room. What is as
+/* By way of the positions at the last table, which are written anew in the end, and what is wider by way of room of its own. What is as
  * large as positions changes places with them instead of being copied back. */
-static status permute_numbers(simulation *sim, const clast_launch *launch, stored_field *stored, failure *why)
+static status permute_field(simulation *sim, const clast_launch *launch, stored_field *stored, failure *why)
 {
-    field_type type = stored->field->type;
-    int components = stored->field->components;
-    const char *name = type == FIELD_EXACT ? "table_permute_exact" : "table_permute_real";
-    cl_kernel kernel = launch_kernel(sim, name);
-    cl_mem from = stored->mem, scratch = components > 3 ? sim->scratch4 : sim->built_position;
-    TRY(launch_set(kernel, name, why, "Lmmmi", launch, sim->table.work[WORK_C], from, scratch, components));
-    TRY(launch_run(sim, kernel, name, sim->count, sim->block, why));
-    if (field_bytes(sim, stored->field) == field_bytes(sim, &field_position)) {
-        stored->mem = sim->built_position;
-        sim->built_position = from;
-        return STATUS_OK;
-    }
-    return store_copy(sim, scratch, from, 0, 0, store_item(sim, type) * (uint64_t)(sim->count * components), why);
+    cl_kernel kernel = launch_kernel(sim, "table_permute");
+    uint64_t bytes = store_item(sim, stored->field->type) * (uint64_t)stored->field->components, like_position = field_bytes(sim, &field_position);
+    bool wide = field_bytes(sim, stored->field) > like_position, alike = field_bytes(sim, stored->field) == like_position;
+    cl_mem from = stored->mem, scratch = wide ? sim->scratch4 : sim->built_position;
+    TRY(launch_set(kernel, "table_permute", why, "Lmmmi", launch, sim->table.work[WORK_C], from, scratch, (cl_int)(bytes / 4)));
+    TRY(launch_run(sim, kernel, "table_permute", sim->count, sim->block, why));
+    if (!alike)
+        return store_copy(sim, scratch, from, 0, 0, bytes * (uint64_t)sim->count, why);
+    stored->mem = scratch;
+    sim->built_position = from;
+    return STATUS_OK;
 }
 
 static status permute_fields(simulation *sim, const clast_launch *launch, failure *why)
 {
-    cl_kernel kernel = launch_kernel(sim, "table_permute_int");
     for (int f = 0; f < sim->field_count; f++) {
         const field *field = sim->field[f].field;
-        cl_mem mem = sim->field[f].mem;
-        if (field->extent != PER_PARTICLE || field->role != FIELD_STATE)
-            continue;
-        if (field->type != FIELD_INT) {
-            TRY(permute_numbers(sim, launch, &sim->field[f], why));
-            continue;
-        }
-        TRY(launch_set(kernel, "table_permute_int", why, "Lmmm", launch, sim->table.work[WORK_C], mem, sim->table.work[WORK_B]));
-        TRY(launch_run(sim, kernel, "table_permute_int", sim->count, sim->block, why));
-        TRY(store_copy(sim, sim->table.work[WORK_B], mem, 0, 0, 4 * (uint64_t)sim->count, why));
+        if (field->extent == PER_PARTICLE && field->role == FIELD_STATE)
+            TRY(permute_field(sim, launch, &sim->field[f], why));
     }
     return STATUS_OK;
 }

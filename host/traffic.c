@@ -53,19 +53,17 @@ static const struct {
 
 /* ---- one argument ---- */
 
-/* Fields that a new table brings into order; the kernel is launched for one after the other, and the mean stands for each. */
-static double mean_components(const simulation *sim, field_extent extent, const char *kernel)
+/* Of the fields that tables move, kernel launch by kernel launch: numbers of an element's size, on average. */
+static double mean_elements(const simulation *sim, field_extent extent, double element)
 {
+    field_role moved = extent == PER_RECORD ? FIELD_HISTORY : FIELD_STATE;
     double sum = 0.0;
     int count = 0;
     for (int f = 0; f < sim->field_count; f++) {
         const field *field = sim->field[f].field;
-        bool fits = strstr(kernel, "_int")     ? field->type == FIELD_INT
-                    : strstr(kernel, "_exact") ? field->type == FIELD_EXACT
-                                               : field->type == FIELD_REAL;
-        if (field->extent != extent || (extent == PER_PARTICLE ? !fits : field->role != FIELD_HISTORY))
+        if (field->extent != extent || field->role != moved)
             continue;
-        sum += field->components;
+        sum += field->components * (double)store_item(sim, field->type) / element;
         count++;
     }
     return count > 0 ? sum / count : 1.0;
@@ -89,8 +87,8 @@ static double elements(const simulation *sim, extent extent, const char *kernel,
     case OF_SCAN:
         return (double)items * SCAN_CHUNK;
     case OF_MOVED:
-        return carried ? (double)t->record_count * mean_components(sim, PER_RECORD, kernel)
-                       : (double)sim->count * mean_components(sim, PER_PARTICLE, kernel);
+        return carried ? (double)t->record_count * mean_elements(sim, PER_RECORD, (double)store_item(sim, FIELD_REAL))
+                       : (double)sim->count * mean_elements(sim, PER_PARTICLE, 4.0);
     default:
         return 0.0;
     }

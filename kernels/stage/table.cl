@@ -84,34 +84,16 @@ __kernel void table_order_cells(__global const uint *restrict cell_start, __glob
     }
 }
 
-__kernel void table_permute_exact(const clast_launch launch, __global const int *restrict order, __global const exact *restrict from,
-                                  __global exact *restrict to, const int components)
+/* A field in the new order, whatever its type: `words` of 32 bits a grain. */
+__kernel void table_permute(const clast_launch launch, __global const int *restrict order, __global const uint *restrict from,
+                            __global uint *restrict to, const int words)
 {
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
-    size_t old = (size_t)order[i] * components, now = (size_t)i * components;
-    for (int c = 0; c < components; c++)
-        to[now + c] = from[old + c];
-}
-
-__kernel void table_permute_real(const clast_launch launch, __global const int *restrict order, __global const real *restrict from,
-                                 __global real *restrict to, const int components)
-{
-    int i = get_global_id(0);
-    if (i >= launch.particle_count)
-        return;
-    size_t old = (size_t)order[i] * components, now = (size_t)i * components;
-    for (int c = 0; c < components; c++)
-        to[now + c] = from[old + c];
-}
-
-__kernel void table_permute_int(const clast_launch launch, __global const int *restrict order, __global const int *restrict from,
-                                __global int *restrict to)
-{
-    int i = get_global_id(0);
-    if (i < launch.particle_count)
-        to[i] = from[order[i]];
+    size_t old = (size_t)order[i] * words, now = (size_t)i * words;
+    for (int w = 0; w < words; w++)
+        to[now + w] = from[old + w];
 }
 
 /* A grain as others look for it. */

@@ -109,6 +109,18 @@ static inline void case_close(physics_case *c)
     scene_free(c->scene);
 }
 
+/* Stopped, and taken up again by a simulation of its own. */
+static inline void case_stop_and_resume(physics_case *c)
+{
+    bundle saved;
+    bundle_init(&saved);
+    MUST(state_save(c->sim, &saved, why));
+    simulation_free(c->sim);
+    MUST(simulation_create(c->scene, &c->bed, case_device(), getenv("CLAST_KERNELS"), &c->sim, why));
+    MUST(state_load(c->sim, &saved, "memory", why));
+    bundle_free(&saved);
+}
+
 static inline void case_run(physics_case *c, int64_t steps, double dt)
 {
     if (dt != c->sim->dt)

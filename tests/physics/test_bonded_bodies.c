@@ -164,15 +164,8 @@ static void test_no_table_loses_a_bond(void **state)
         physics_case c = case_open(&t);
         int steps = (int)(0.5 * PI / omega / 4e-7);
         case_run(&c, steps, 4e-7);
-        if (n == 2) { /* stopped and taken up again, where they are furthest apart */
-            bundle saved;
-            memset(&saved, 0, sizeof saved);
-            MUST(state_save(c.sim, &saved, why));
-            simulation_free(c.sim);
-            MUST(simulation_create(c.scene, &c.bed, case_device(), getenv("CLAST_KERNELS"), &c.sim, why));
-            MUST(state_load(c.sim, &saved, "memory", why));
-            bundle_free(&saved);
-        }
+        if (n == 2) /* stopped and taken up again, where they are furthest apart */
+            case_stop_and_resume(&c);
         double *x = case_field(&c, "position");
         for (int k = 0; k < STRETCHED; k++) {
             double apart = x[6 * k + 3] - x[6 * k] - 2.0 * radius - gap;
