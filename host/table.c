@@ -335,12 +335,21 @@ static status fill_slots(simulation *sim, const clast_launch *launch, failure *w
     return launch_run(sim, sort, "table_sort_slots", sim->count, sim->block, why);
 }
 
+static status carry_history(simulation *sim, const stored_field *stored, cl_mem from, int64_t old_stride, failure *why)
+{
+    contact_table *t = &sim->table;
+    cl_kernel carry = launch_kernel(sim, "table_carry");
+    int components = stored->field->components;
+    TRY(launch_set(carry, "table_carry", why, "mmmlliii", t->match, from, stored->mem, (clast_i64)old_stride, (clast_i64)t->record_stride, t->record_count,
+                   components, components > 1));
+    return launch_run(sim, carry, "table_carry", t->record_count, sim->block, why);
+}
+
 /* Every history of the old records into the new ones. Where nothing grew the force array, of three components as a history has at most, holds
  * the old one meanwhile. */
 static status carry_histories(simulation *sim, int64_t old_stride, failure *why)
 {
     contact_table *t = &sim->table;
-    cl_kernel carry = launch_kernel(sim, "table_carry");
     bool grown = old_stride != t->record_stride;
     for (int f = 0; f < sim->field_count; f++) {
         stored_field *stored = &sim->field[f];
@@ -354,16 +363,14 @@ static status carry_histories(simulation *sim, int64_t old_stride, failure *why)
                 TRY(grow(sim, &stored->mem, old_bytes, field_bytes(sim, field), why));
             continue;
         }
-        if (grown)
-            TRY(store_buffer(sim, &stored->mem, field_bytes(sim, field), field->name, why));
         cl_mem from = grown ? old : store_find(sim, "force")->mem;
-        if (!grown)
-            TRY(store_copy(sim, old, from, 0, 0, old_bytes, why));
-        TRY(launch_set(carry, "table_carry", why, "mmmlliii", t->match, from, stored->mem, (clast_i64)old_stride, (clast_i64)t->record_stride,
-                       t->record_count, field->components, field->components > 1));
-        TRY(launch_run(sim, carry, "table_carry", t->record_count, sim->block, why));
+        status result = grown ? store_buffer(sim, &stored->mem, field_bytes(sim, field), field->name, why)
+                              : store_copy(sim, old, from, 0, 0, old_bytes, why);
+        if (result == STATUS_OK)
+            result = carry_history(sim, stored, from, old_stride, why);
         if (grown)
             store_release(sim, &old, old_bytes);
+        TRY(result);
     }
     return STATUS_OK;
 }
