@@ -35,6 +35,9 @@ double frozen_allowed_error(const simulation *sim);
 bool frozen_is_inside(const simulation *sim, const frozen_findings *found);
 /* The step ahead, so that it ends at what is left or leaves room for another like it. */
 double frozen_fit_step(double step, double left);
+/* The share of a stage, or of Euler's limit, below which a step has dwindled to nothing. Where the edge of a moving beam takes in a grain at once, the
+ * error is what that grain is heated by in the step, and falls no faster than it. */
+#define FROZEN_DWINDLED 1e-10
 status frozen_give_up(const simulation *sim, double step, const frozen_findings *found, failure *why);
 /* The first six arguments of kernels that look at flows. */
 status frozen_set_network(simulation *sim, cl_kernel kernel, const char *name, const clast_launch *launch, cl_mem rises, failure *why);

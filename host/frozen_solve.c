@@ -465,7 +465,7 @@ status frozen_implicit_step(simulation *sim, double until, failure *why)
         f->rejected++;
         TRY(frozen_take_back(sim, why));
         f->next = step * (found.error > allowed ? fmax(fmin(growth, 0.8), 0.1) : 0.5);
-        if (f->next < 1e-6 * fmin(f->limit, left))
+        if (f->next < FROZEN_DWINDLED * fmin(f->limit, left))
             return frozen_give_up(sim, step, &found, why);
     }
 }

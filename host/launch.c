@@ -29,6 +29,7 @@ static const stage_list stage_lists[] = {
     {"heat_conductances", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"guard_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"limit_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
+    {"pair_catch_up", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"particle_stage", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"particle_synchronise", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"stiffness_rate", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
@@ -155,7 +156,10 @@ status launch_bind_stages(simulation *sim, failure *why)
     for (size_t k = 0; k < sizeof others / sizeof *others; k++)
         TRY(launch_bind(sim, others[k], 1, why));
     TRY(step_loop_bind(sim, why));
-    return live_keeps_half_steps(&sim->live) ? launch_bind(sim, "particle_synchronise", 3, why) : STATUS_OK;
+    if (!live_keeps_half_steps(&sim->live))
+        return STATUS_OK;
+    TRY(launch_bind(sim, "pair_catch_up", 1, why));
+    return launch_bind(sim, "particle_synchronise", 5, why);
 }
 
 static status open_program(simulation *sim, const char *constants, const char *const *files, int count, cl_program *out, failure *why)
@@ -177,7 +181,7 @@ static bool has_kernel(const simulation *sim, const char *name)
 {
     if (strcmp(name, "step_loop") == 0)
         return step_loop_wanted(sim);
-    if (strcmp(name, "particle_synchronise") == 0)
+    if (strcmp(name, "particle_synchronise") == 0 || strcmp(name, "pair_catch_up") == 0)
         return live_keeps_half_steps(&sim->live);
     if (strcmp(name, "heat_flush") == 0)
         return sim->live.law[SLOT_HEAT_STEPS] != NULL;
@@ -230,7 +234,7 @@ status launch_open(simulation *sim, failure *why)
                                         "table_last_records", "table_releases", "table_place",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
-                                        "particle_synchronise", "step_loop", "servo_place", "servo_stage", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
+                                        "pair_catch_up", "particle_synchronise", "step_loop", "servo_place", "servo_stage", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
                                         "heat_conductances", "heat_limit", "stiffness_rate", "heat_sums", "heat_surfaces", "heat_areas", "heat_flush",
                                         "heat_frozen_given", "heat_frozen_links", "heat_frozen_stage", "heat_frozen_error",
                                         "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_probe", "heat_frozen_spectrum", "heat_frozen_residual",

@@ -12,6 +12,25 @@ const char *const ledger_terms[LEDGER_TERMS] = {"dissipated_normal", "dissipated
 
 static const field *const sums[LEDGER_FIELDS] = {&field_dissipated, &field_work_contacts, &field_work_grains};
 
+status ledger_add_half_step(simulation *sim, const field *term, double *rows, failure *why)
+{
+    int at = 0;
+    while (at < LEDGER_FIELDS && sums[at] != term)
+        at++;
+    if (at == LEDGER_FIELDS || !sim->live.law[SLOT_LEDGER])
+        return STATUS_OK;
+    cl_mem velocity, spin;
+    double *now = malloc(sizeof *now * (size_t)(3 * LEDGER_FIELDS * sim->count + 1));
+    status result = now ? observe_velocities(sim, &velocity, &spin, why) : fail(why, STATUS_ERROR, "out of memory");
+    if (result == STATUS_OK)
+        result = store_get(sim, sim->ledger_now, FIELD_EXACT, 0, 3 * LEDGER_FIELDS * sim->count, now, why);
+    for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++)
+        for (int c = 0; c < 3; c++)
+            rows[3 * i + c] += now[3 * (LEDGER_FIELDS * i + at) + c];
+    free(now);
+    return result;
+}
+
 status ledger_read(simulation *sim, double *out, failure *why)
 {
     memcpy(out, sim->left_energy, sizeof sim->left_energy);

@@ -50,6 +50,20 @@ static void move_sums(const simulation *sim, double *sum)
     }
 }
 
+/* Velocities, spins and the ledger at the time of the positions; contacts' histories, too, where a stage ends. */
+static status synchronise(simulation *sim, bool ends, failure *why)
+{
+    const char *on_records = ends ? "pair_catch_up" : "pair_probe";
+    clast_launch launch = launch_values(sim);
+    cl_kernel records = launch_kernel(sim, on_records), now = launch_kernel(sim, "particle_synchronise");
+    launch.kick = 0.5 * sim->lag;
+    TRY(simulation_pose_now(sim, why));
+    TRY(launch_set(records, on_records, why, "L", &launch));
+    TRY(launch_run(sim, records, on_records, sim->table.record_count, sim->block, why));
+    TRY(launch_set(now, "particle_synchronise", why, "Lmmmi", &launch, sim->velocity_now, sim->spin_now, sim->ledger_now, (cl_int)ends));
+    return launch_run(sim, now, "particle_synchronise", sim->count, sim->block, why);
+}
+
 status observe_velocities(simulation *sim, cl_mem *velocity, cl_mem *spin, failure *why)
 {
     stored_field *turning = sim->live.law[SLOT_ROTATION] ? store_find(sim, "spin") : NULL;
@@ -57,17 +71,21 @@ status observe_velocities(simulation *sim, cl_mem *velocity, cl_mem *spin, failu
     *spin = turning ? turning->mem : NULL;
     if (!live_keeps_half_steps(&sim->live))
         return STATUS_OK;
-    clast_launch launch = launch_values(sim);
-    cl_kernel probe = launch_kernel(sim, "pair_probe"), now = launch_kernel(sim, "particle_synchronise");
-    launch.kick = 0.5 * sim->lag;
-    TRY(simulation_pose_now(sim, why));
-    TRY(launch_set(probe, "pair_probe", why, "L", &launch));
-    TRY(launch_run(sim, probe, "pair_probe", sim->table.record_count, sim->block, why));
-    TRY(launch_set(now, "particle_synchronise", why, "Lmm", &launch, sim->velocity_now, sim->spin_now));
-    TRY(launch_run(sim, now, "particle_synchronise", sim->count, sim->block, why));
+    TRY(synchronise(sim, false, why));
     *velocity = sim->velocity_now;
     *spin = turning ? sim->spin_now : NULL;
     return STATUS_OK;
+}
+
+status observe_end_half_steps(simulation *sim, failure *why)
+{
+    stored_field *spin = sim->live.law[SLOT_ROTATION] ? store_find(sim, "spin") : NULL, *growth = store_find(sim, "growth");
+    TRY(synchronise(sim, true, why));
+    TRY(store_copy(sim, sim->velocity_now, store_find(sim, "velocity")->mem, 0, 0, field_bytes(sim, &field_velocity), why));
+    if (spin)
+        TRY(store_copy(sim, sim->spin_now, spin->mem, 0, 0, field_bytes(sim, spin->field), why));
+    /* the work of the last growth stands in the ledger now */
+    return growth ? store_fill(sim, growth->mem, field_bytes(sim, growth->field), why) : STATUS_OK;
 }
 
 static status sum_particles(simulation *sim, cl_mem velocity, cl_mem spin, particle_sums *out, failure *why)
@@ -122,21 +140,27 @@ static status read_component(simulation *sim, cl_mem mem, int component, double 
     return store_get(sim, mem, FIELD_REAL, component * sim->table.record_stride, records, *out, why);
 }
 
-static status run_on_records(simulation *sim, const char *name, failure *why)
+static status run_over(simulation *sim, const char *name, double dt, failure *why)
 {
     clast_launch launch = launch_values(sim);
     cl_kernel kernel = launch_kernel(sim, name);
     TRY(simulation_pose_now(sim, why));
-    launch.dt = 0.0;
+    launch.dt = dt;
     launch.step = -1; /* before any at which a batch has halted */
     TRY(heat_sum_areas(sim, &launch, why));
     TRY(launch_pass(kernel, name, &launch, why));
     return launch_run(sim, kernel, name, sim->table.record_count, sim->block, why);
 }
 
+static status run_on_records(simulation *sim, const char *name, failure *why)
+{
+    return run_over(sim, name, 0.0, why);
+}
+
+/* Over a step as it will be: a contact that slides stands at its limit without one, and may seem to stick. */
 status observe_flows(simulation *sim, failure *why)
 {
-    return run_on_records(sim, "pair_probe", why);
+    return run_over(sim, "pair_probe", sim->dt, why);
 }
 
 static status read_ints(simulation *sim, cl_mem mem, int64_t count, int32_t **out, failure *why)
@@ -449,6 +473,8 @@ status observe_field(simulation *sim, const char *name, double **out, failure *w
         (*out)[n] = NAN;
     if (result == STATUS_OK)
         result = read_grains(sim, &from, &rows, why);
+    if (result == STATUS_OK && live_keeps_half_steps(&sim->live))
+        result = ledger_add_half_step(sim, stored->field, rows, why);
     for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++)
         memcpy(*out + (int64_t)id[i] * components, rows + i * components, sizeof *rows * (size_t)components);
     free(rows);

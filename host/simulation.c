@@ -6,6 +6,7 @@
 #include "laws/fields.h"
 #include "precision.h"
 #include "laws/laws.h"
+#include "ledger.h"
 #include "property.h"
 
 #include <math.h>
@@ -191,6 +192,8 @@ static status create_buffers(simulation *sim, failure *why)
     if (live_keeps_half_steps(&sim->all)) {
         TRY(store_buffer(sim, &sim->velocity_now, field_bytes(sim, &field_velocity), "synchronised velocities", why));
         TRY(store_buffer(sim, &sim->spin_now, store_find(sim, "spin") ? field_bytes(sim, &field_spin) : 0, "synchronised spins", why));
+        if (sim->all.law[SLOT_LEDGER])
+            TRY(store_buffer(sim, &sim->ledger_now, LEDGER_FIELDS * field_bytes(sim, &field_dissipated), "the ledger's last half step", why));
     }
     TRY(store_buffer(sim, &sim->where, 4 * (uint64_t)sim->stride, "indices of ids", why));
     TRY(store_buffer(sim, &sim->control, sizeof(clast_control), "control words", why));
@@ -256,7 +259,7 @@ void simulation_free(simulation *sim)
     for (int f = 0; f < sim->field_count; f++)
         store_release(sim, &sim->field[f].mem, 0);
     cl_mem *const rest[] = {&sim->where, &sim->partial, &sim->control, &sim->faces, &sim->movers, &sim->constants, &sim->built_position, &sim->scratch4,
-                            &sim->velocity_now, &sim->spin_now};
+                            &sim->velocity_now, &sim->spin_now, &sim->ledger_now};
     for (size_t m = 0; m < sizeof rest / sizeof *rest; m++)
         store_release(sim, rest[m], 0);
     free(sim->outbox.copy);

@@ -170,6 +170,7 @@ typedef struct simulation {
     step_loop loop;
     outbox outbox;
     cl_mem velocity_now, spin_now; /* synchronised, where velocities stand half a step behind */
+    cl_mem ledger_now;             /* and the ledger of that half step, nine numbers a grain; NULL without a ledger */
     int64_t partial_capacity;
     contact_table table;
     step_plan plan;
@@ -379,6 +380,9 @@ status observe_particle_sums(simulation *sim, particle_sums *out, failure *why);
 status observe_stored_sums(simulation *sim, particle_sums *out, failure *why);
 /* Velocities and spins (NULL without) at the time of the positions, in arrays of the device. */
 status observe_velocities(simulation *sim, cl_mem *velocity, cl_mem *spin, failure *why);
+/* Where a stage ends under an integrator of half steps: velocities, histories of contacts, ledger and heat of dissipation come to the time of the
+ * positions for good. */
+status observe_end_half_steps(simulation *sim, failure *why);
 status observe_contact_sums(simulation *sim, contact_sums *out, failure *why);
 /* Leaves in the records the forces and flows as they stand. */
 status observe_flows(simulation *sim, failure *why);
@@ -464,6 +468,8 @@ status clusters_measure(simulation *sim, cluster_sums *out, failure *why);
 /* ledger.c */
 /* The terms of the ledger so far, LEDGER_TERMS of them in the order of ledger_terms. */
 status ledger_read(simulation *sim, double *out, failure *why);
+/* Adds to one of the ledger's fields, a row a grain, the half step by which velocities stand behind the positions; nothing to other fields. */
+status ledger_add_half_step(simulation *sim, const field *term, double *rows, failure *why);
 /* Keeps the sums of grains that leave. */
 status ledger_leave(simulation *sim, const int32_t *index, int64_t count, failure *why);
 

@@ -132,10 +132,7 @@ static status end_half_steps(simulation *sim, failure *why)
 {
     if (sim->stage < 0 || !live_keeps_half_steps(&sim->live))
         return STATUS_OK;
-    cl_mem velocity, spin;
-    TRY(observe_velocities(sim, &velocity, &spin, why));
-    TRY(store_copy(sim, velocity, store_find(sim, "velocity")->mem, 0, 0, field_bytes(sim, &field_velocity), why));
-    return spin ? store_copy(sim, spin, store_find(sim, "spin")->mem, 0, 0, field_bytes(sim, &field_spin), why) : STATUS_OK;
+    return observe_end_half_steps(sim, why);
 }
 
 static status begin_half_steps(simulation *sim, failure *why)

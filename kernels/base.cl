@@ -226,8 +226,9 @@ typedef struct contact {
 typedef struct spring_step {
     real stiffness;     /* 0 where the two do not touch */
     real before, after; /* energy at this stiffness, of the stretch before this step and of the stretch now */
+    real between;       /* the same of half the product of the two stretches */
     real limit;         /* the most that the spring can give back: of a stretch at which the slider gives way */
-    real rescaled;      /* square of the factor by which the law itself shortened the spring */
+    real rescaled;      /* factor by which the law itself shortened the spring */
     bool slides;
     vec3 damper;        /* force or moment of the damper on i */
 } spring_step;
@@ -259,7 +260,7 @@ typedef struct grain_step {
 
 INLINE spring_step no_spring(bool slides)
 {
-    spring_step s = {R(0.0), R(0.0), R(0.0), R(0.0), R(1.0), slides, {R(0.0), R(0.0), R(0.0)}};
+    spring_step s = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(1.0), slides, {R(0.0), R(0.0), R(0.0)}};
     return s;
 }
 

@@ -38,16 +38,20 @@ INLINE acting_rates dissipation_rates(const contact *c)
     return r;
 }
 
-/* What spring, damper and slider lose. `stored` was held at the stiffness `at`. While the contact sticks the change of stiffness since does work
- * on the stretch, *work; while it slides, the slider sets the stretch, and what the spring loses is lost. */
+/* What spring, damper and slider lose. `stored` was held at the stiffness `at`: all of the spring's energy, or what the slider would have let it
+ * give back. While the contact sticks the change of stiffness since does work on the stretch, *work: what the spring gains beyond the mean of its
+ * forces before and after times its stretching, which is the change of stiffness times half the product of the two stretches. While it slides, the
+ * slider sets the stretch, and what the spring loses is lost. */
 INLINE real dissipation_spring(const spring_step *step, real stored, real at, vec3 force, vec3 rate, real dt, real *work)
 {
     bool slides = step->slides || !(step->stiffness > R(0.0));
-    real carried = at > R(0.0) ? stored * step->stiffness * step->rescaled / (at > R(0.0) ? at : R(1.0)) : stored;
+    real kept = step->rescaled, softer = at / (slides ? R(1.0) : step->stiffness * kept); /* the stiffness before over that of now */
+    real held = step->before * softer / kept, stiffened = step->between * (R(1.0) - softer) - held * (R(1.0) - kept);
     real after = step->after < step->limit ? step->after : step->limit;
+    real counted = stiffened * (stored < held ? stored / held : R(1.0));
     real sliding = -dt * dot3(force, rate) - (after - stored);
-    real sticking = -dt * dot3(step->damper, rate) + (step->after - after) - (step->before - carried);
-    *work = slides ? R(0.0) : carried - stored;
+    real sticking = -dt * dot3(step->damper, rate) + (step->after - after) - (held - stored) - (stiffened - counted);
+    *work = slides ? R(0.0) : counted;
     return slides ? sliding : sticking;
 }
 

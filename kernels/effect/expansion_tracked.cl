@@ -4,11 +4,8 @@
 #define EXPANSION_PAIR_FIELDS(READ, WRITE) READ(real, growth) WRITE(real, pushed) WRITE(real, expansion_work)
 #define EXPANSION_PARTICLE_FIELDS(READ, WRITE) WRITE(real, growth) READ(real, expansion_work)
 #define EXPANSION_LOAD(launch, k, s) (s).pushed = pushed[k]
-#define EXPANSION_STORE(launch, k, s)    \
-    do {                                 \
-        pushed[k] = (s).pushed;          \
-        expansion_work[k] = (s).work;    \
-    } while (0)
+#define EXPANSION_STORE(launch, k, s) pushed[k] = (s).pushed
+#define EXPANSION_STORE_WORK(launch, k, s) expansion_work[k] = (s).work
 #define EXPANSION_GATHER(launch, k, sum) sum += expansion_work[k]
 #define GROWTH_OF(i) growth[i]
 #define GROWTH_KEEP(i, grown) growth[i] = (grown)

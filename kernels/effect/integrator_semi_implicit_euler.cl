@@ -17,6 +17,8 @@
 #define INTEGRATOR_KEEP_VELOCITY(i, v)
 #define INTEGRATOR_KEEP_SPIN(i, w)
 #define INTEGRATOR_AHEAD(kept, ahead) (kept)
+/* Springs as sums of energy see them: those that gave the last forces. */
+#define INTEGRATOR_CATCH_UP(c, s, out)
 #define INTEGRATOR_DAMPING_LAG R(1.0)
 
 INLINE precise3 integrate_velocity(precise3 velocity, vec3 acceleration, real dt)

@@ -29,26 +29,45 @@ INLINE void ledger_wall(ledger_state *s, real work)
 
 #define LEDGER_ADD(sum, i, v) SET_GRAIN3(sum, i, precise3_add(PRECISE_GRAIN3(sum, i), precise3_from(v)))
 
-/* The records that grain i owns. */
-#define LEDGER_ADVANCE(launch, i, step)                                                                                                   \
-    do {                                                                                                                                  \
-        vec3 lost = v3(R(0.0), R(0.0), R(0.0)), work = lost;                                                                              \
-        uint first = slot_offset[(i) / CLAST_BLOCK], end = slot_offset[(i) / CLAST_BLOCK + 1];                                            \
-        for (uint s = first; s < end; s += CLAST_BLOCK) {                                                                                 \
-            int entry = slots[s + (i) % CLAST_BLOCK];                                                                                     \
-            if (entry == 0)                                                                                                               \
-                break;                                                                                                                    \
-            if (entry < 0)                                                                                                                \
-                continue;                                                                                                                 \
-            lost = add(lost, LOAD3(record_energy, (launch)->record_stride, entry - 1));                                                   \
-            work.x += AT(record_energy, (launch)->record_stride, 3, entry - 1);                                                           \
-            work.y += AT(record_energy, (launch)->record_stride, 4, entry - 1);                                                           \
-            EXPANSION_GATHER(launch, entry - 1, work.z);                                                                                  \
-        }                                                                                                                                 \
-        work.z += (step)->grown;                                                                                                          \
-        LEDGER_ADD(dissipated, i, lost);                                                                                                  \
-        LEDGER_ADD(work_contacts, i, work);                                                                                               \
-        LEDGER_ADD(work_grains, i, ledger_grain(launch, step));                                                                           \
+/* What the records lose that grain i owns, and the work on them. */
+#define LEDGER_GATHER(launch, i, lost, work)                                                  \
+    do {                                                                                      \
+        uint first = slot_offset[(i) / CLAST_BLOCK], end = slot_offset[(i) / CLAST_BLOCK + 1]; \
+        for (uint s = first; s < end; s += CLAST_BLOCK) {                                     \
+            int entry = slots[s + (i) % CLAST_BLOCK];                                         \
+            if (entry == 0)                                                                   \
+                break;                                                                        \
+            if (entry < 0)                                                                    \
+                continue;                                                                     \
+            lost = add(lost, LOAD3(record_energy, (launch)->record_stride, entry - 1));       \
+            work.x += AT(record_energy, (launch)->record_stride, 3, entry - 1);               \
+            work.y += AT(record_energy, (launch)->record_stride, 4, entry - 1);               \
+            EXPANSION_GATHER(launch, entry - 1, work.z);                                      \
+        }                                                                                     \
+    } while (0)
+
+#define LEDGER_ADVANCE(launch, i, step)                              \
+    do {                                                             \
+        vec3 lost = v3(R(0.0), R(0.0), R(0.0)), work = lost;         \
+        LEDGER_GATHER(launch, i, lost, work);                        \
+        work.z += (step)->grown;                                     \
+        LEDGER_ADD(dissipated, i, lost);                             \
+        LEDGER_ADD(work_contacts, i, work);                          \
+        LEDGER_ADD(work_grains, i, ledger_grain(launch, step));      \
+    } while (0)
+
+/* The half step that brings velocities to the time of the positions: added where it is taken for good, else left in `now`, nine numbers a grain. */
+#define LEDGER_HALF_STEP(launch, i, step, now, ends)                         \
+    do {                                                                     \
+        if (ends)                                                            \
+            LEDGER_ADVANCE(launch, i, step);                                 \
+        else {                                                               \
+            vec3 lost = v3(R(0.0), R(0.0), R(0.0)), work = lost;             \
+            LEDGER_GATHER(launch, i, lost, work);                            \
+            SET_GRAIN3(now, 3 * (i), precise3_from(lost));                   \
+            SET_GRAIN3(now, 3 * (i) + 1, precise3_from(work));               \
+            SET_GRAIN3(now, 3 * (i) + 2, precise3_from(ledger_grain(launch, step))); \
+        }                                                                    \
     } while (0)
 
 /* Gravity, background damping (what it takes out), and what holds or moves a grain as prescribed. Over a step the kinetic energy changes by

@@ -65,6 +65,7 @@ INLINE void rolling_moment(const contact *c, rolling_state *s, response *out)
     spring_step step = {m.stiffness,
                         dot3(scale(R(0.5) * m.stiffness, before), before),
                         dot3(scale(R(0.5) * m.stiffness, s->spring), s->spring),
+                        dot3(scale(R(0.5) * m.stiffness, s->spring), before),
                         limit * compliance * (R(0.5) * limit),
                         R(1.0),
                         yields,

@@ -52,8 +52,9 @@ INLINE void tangential_force(const contact *c, slip_state *slip, tangential_stat
     spring_step step = {stiffness,
                         R(0.5) * stiffness * dot3(before, before),
                         R(0.5) * stiffness * dot3(s->spring, s->spring),
+                        R(0.5) * stiffness * dot3(before, s->spring),
                         bound,
-                        shortened * shortened,
+                        shortened,
                         factor < R(1.0),
                         scale(-damping, c->slip)};
     out->sliding = step;

@@ -3,6 +3,7 @@
 #define EXPANSION_PARTICLE_FIELDS(READ, WRITE)
 #define EXPANSION_LOAD(launch, k, s) (s).unused = 0
 #define EXPANSION_STORE(launch, k, s)
+#define EXPANSION_STORE_WORK(launch, k, s)
 #define EXPANSION_GATHER(launch, k, sum)
 #define GROWTH_OF(i) R(0.0)
 #define GROWTH_KEEP(i, growth) (void)(growth)

@@ -4,6 +4,7 @@
 #define LEDGER_LOAD(launch, k, s) (s).unused = 0
 #define LEDGER_STORE(launch, k, s)
 #define LEDGER_ADVANCE(launch, i, step)
+#define LEDGER_HALF_STEP(launch, i, step, now, ends)
 
 typedef struct ledger_state {
     int unused;

@@ -78,7 +78,9 @@ INLINE void observe_record(const clast_launch *launch, int k, bool wall PAIR_DEC
         contact_of_wall(launch, k, &c, &touch PAIR_PASS);
     else
         contact_of_grains(launch, k, &c PAIR_PASS);
-    c.dt = c.elapsed = R(0.0);
+    c.dt = R(0.0);
+    c.elapsed = number(INTEGRATOR_ELAPSED(launch)); /* 0 where histories are those of the velocities as they stand */
+    c.span = R(0.0);
     c.value = contact_constants + c.class * CONTACT_CONSTANTS;
     PAIR_LOAD_STATE(launch, k, s);
     response out;
@@ -86,6 +88,7 @@ INLINE void observe_record(const clast_launch *launch, int k, bool wall PAIR_DEC
     normal_total(&c, &out);
     bond_normal(&c, &s.bond, &out);
     cohesion_unless_bonded(&c, &s, &out);
+    INTEGRATOR_CATCH_UP(&c, &s, &out);
     real smaller = wall || c.radius_i < c.radius_j ? c.radius_i : c.radius_j;
     real springs = normal_energy(&c) + tangential_energy(&c, &s.slip, &s.tangential, out.bearing) + rolling_energy(&c, &s.rolling, out.bearing);
     AT(force, launch->record_stride, 0, k) = c.overlap / smaller;

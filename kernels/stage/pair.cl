@@ -18,6 +18,10 @@
     SOFTENING_STORE(launch, k, (s).softening);    \
     EXPANSION_STORE(launch, k, (s).expansion);    \
     DISSIPATION_STORE(launch, k, (s).dissipation);\
+    PAIR_STORE_WORK(launch, k, s)
+/* What the ledger asks of this step alone. */
+#define PAIR_STORE_WORK(launch, k, s)               \
+    EXPANSION_STORE_WORK(launch, k, (s).expansion); \
     LEDGER_STORE(launch, k, (s).ledger)
 
 /* The rest of a record once its geometry is known; `account` may add to the ledger, `keep` writes the history. */
@@ -35,7 +39,6 @@
     STORE3(force, launch->record_stride, at, total);                     \
     account;                                                             \
     keep(launch, k, s)
-#define PAIR_KEEP_NOTHING(launch, k, s)
 #define PAIR_WORK_OF_WALL ledger_wall(&s.ledger, c.span *(dot3(total, touch.velocity) + dot3(out.rolling, c.spin_j)))
 
 /* The rest of a pair of grains, whose contact `c` is known. */
@@ -76,5 +79,5 @@
 
 PAIR_OF_GRAINS(pair_of_grains, PAIR_STORE_STATE)
 PAIR_OF_WALL(pair_of_wall, PAIR_STORE_STATE)
-PAIR_OF_GRAINS(pair_of_grains_as_is, PAIR_KEEP_NOTHING)
-PAIR_OF_WALL(pair_of_wall_as_is, PAIR_KEEP_NOTHING)
+PAIR_OF_GRAINS(pair_of_grains_as_is, PAIR_STORE_WORK)
+PAIR_OF_WALL(pair_of_wall_as_is, PAIR_STORE_WORK)

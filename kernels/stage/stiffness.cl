@@ -1,15 +1,18 @@
 /* How fast heat changes what contacts are made of, from the flows as they stand: for the limit of the step. In programs whose moduli or radii depend
  * on temperature. */
 
-/* Rate at which grain i's temperature changes, K/s: what flows in, or what is prescribed for the end of the step. Heat of dissipation is left out. */
+/* Rate at which grain i's temperature changes, K/s: what flows in and what its contacts dissipate, or what is prescribed for the end of
+ * the step. */
 INLINE real stiffness_heating(const clast_launch *launch, int i, const grain *g PARTICLE_DECLARE)
 {
-    real flow = R(0.0), apart = g->surroundings - g->temperature, dt = number(launch->dt);
+    real flow = R(0.0), rubbed = R(0.0), apart = g->surroundings - g->temperature, dt = number(launch->dt);
     uint last = slot_offset[i / CLAST_BLOCK + 1];
     for (uint s = slot_offset[i / CLAST_BLOCK] + i % CLAST_BLOCK; s < last && slots[s] != 0; s += CLAST_BLOCK)
         flow += CONDUCTION_GATHER(launch, (slots[s] > 0 ? slots[s] : -slots[s]) - 1, slots[s] > 0 ? R(1.0) : R(-1.0));
     flow += SOURCE_HEAT(launch, i, g) + generation_heat(g) + THERMAL_GROUP_HEAT(launch, i);
     flow += convection_coefficient(g, g->temperature) * apart + radiation_coefficient(g, g->temperature) * apart;
+    DISSIPATION_HEAT_GATHER(launch, i, rubbed); /* J, of a step */
+    flow += dt > R(0.0) ? rubbed / dt : R(0.0);
     precise here = TEMPERATURE_PRECISE(i), held = THERMAL_GROUP_TEMPERATURE(launch, i, here);
     real driven = dt > R(0.0) ? rounded(precise_sub(held, here)) / dt : R(0.0);
     return THERMAL_GROUP_HOLDS(launch, i) ? driven : flow / temperature_capacity(g);

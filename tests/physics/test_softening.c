@@ -150,6 +150,32 @@ static void test_limit(void **state)
     }
 }
 
+/* A hot grain slides over a floor at u: friction heats it by mu g u/c a second, and its modulus changes at beta T'/T*. */
+static void test_limit_by_friction(void **state)
+{
+    (void)state;
+    const double critical = 400, rate = 2, mu = 0.3, speed = 5, capacity = 1e3, m = sphere_mass(density, radius);
+    const double modulus = young / (1.0 - nu * nu) * factor(500, critical, rate, 0), overlap = hertz_rest(modulus, radius, m * 9.8);
+    text t = {0};
+    put(&t, "gravity_m_s2: [0, 0, -9.8]\neffects:\n  - {slot: normal, law: hertz}\n  - {slot: tangential, law: mindlin}\n"
+            "  - {slot: modulus, law: exponential_softening}\n  - {slot: dissipation_heat, law: fraction, fraction: 1}\n"
+            "materials: [{name: m, density_kg_m3: %g, youngs_modulus_pa: %g, poissons_ratio: %g, specific_heat_j_kgk: %g, softening_temperature_k: %g, softening_rate: %g}]\n"
+            "interactions: [{between: default, normal_damping_ratio: 0.3, friction_static: %g}]\n"
+            "walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]\n"
+            "particles:\n  - name: p\n    material: m\n    temperature_k: 500\n    generator: list\n    items:\n",
+        density, young, nu, capacity, critical, rate, mu);
+    put_grain(&t, radius, (double[]){0, 0, radius - overlap}, (double[]){speed, 0, 0}, (double[]){0, 0, 0});
+    physics_case c = case_open(&t);
+    case_run(&c, 200, 0.05 * sqrt(m / (2.0 * modulus * sqrt(radius * overlap))));
+    double *v = case_field(&c, "velocity"), *w = case_field(&c, "spin"), slip = v[0] - w[1] * radius;
+    BETWEEN(slip, 0.9 * speed, speed);
+    /* the floor has its overlap, and with it the normal force, to rounding of lengths */
+    RELATIVE(case_limit(&c).heat.stiffness, critical / (rate * mu * 9.8 * slip / capacity), 2e-2);
+    free(v);
+    free(w);
+    case_close(&c);
+}
+
 /* dT/dt of TM 5.1 for a sphere that rests at every moment: its overlap is that of its weight at the modulus of its temperature. */
 static double heating(double temperature, double m, double *overlap)
 {
@@ -200,7 +226,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closed_form),
         cmocka_unit_test(test_impacts),
-        cmocka_unit_test(test_work), cmocka_unit_test(test_limit), cmocka_unit_test(test_hot_floor),
+        cmocka_unit_test(test_work), cmocka_unit_test(test_limit), cmocka_unit_test(test_limit_by_friction), cmocka_unit_test(test_hot_floor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
