@@ -275,6 +275,26 @@ static void test_frozen(void **state)
     case_close(&c);
 }
 
+/* In a stage without motion a beam with an edge passes over a grain at a tolerance that the jump of what falls on it, power (some 4 K in the whole
+ * passage) from one instant to the next, asks for steps of nanoseconds: the grain takes what falls on it in the time between the two edges. */
+static void test_frozen_edge(void **state)
+{
+    (void)state;
+    const double speed = 0.02, radius = 1.1037e-3, power = 2.0;
+    text t = {0};
+    put_bed(&t,
+            "  - {slot: source, law: laser, name: scan, diameter_m: 2.2074e-3, direction: [0, 0, -1], attenuation_1_m: 1000, "
+            "path: {time_s: [0, 0.5], position_m: [[-3e-3, 0, 0], [7e-3, 0, 0]], power_w: [2, 2]}}\n",
+            "stages: [{motion: frozen, until: {time_s: 0.5}, heat: {tolerance: 1e-9}}]\n", 1, 1);
+    physics_case c = case_open(&t);
+    MUST(frozen_advance(c.sim, 0.5, INT64_MAX, why));
+    double *now = case_field(&c, "temperature");
+    double expected = ABSORBS * FRONT * power / (PI * radius * radius) * (2.0 * radius / speed) / CAPACITY;
+    RELATIVE(now[0] - 300.0, expected, 1e-5 + within(0.0, 300.0 * LAW / expected));
+    free(now);
+    case_close(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_laser),
@@ -285,6 +305,7 @@ int main(void)
                                        cmocka_unit_test(test_moving_beam),
                                        cmocka_unit_test(test_two_sources),
                                        cmocka_unit_test(test_batches),
-                                       cmocka_unit_test(test_frozen)};
+                                       cmocka_unit_test(test_frozen),
+                                       cmocka_unit_test(test_frozen_edge)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
