@@ -17,7 +17,7 @@
 #define PROFILE_STEPS 50
 
 typedef struct bench_figures {
-    int64_t particles, steps, rebuilds;
+    int64_t particles, steps, rebuilds, contacts;
     double wall_s, rebuild_s, particle_steps_per_s;
     double bytes_per_particle, contacts_per_particle, records_per_particle, bonded; /* bonded: share of the contacts */
     double pair_s, particle_s; /* device time of the two stages in a step */
@@ -28,9 +28,15 @@ typedef struct bench_figures {
     char device[1024];
 } bench_figures;
 
+/* Grains that are stiffer swing faster. */
+double bench_step(const bench_options *options)
+{
+    return BENCH_STEP_S / sqrt(options->sizes.ratio);
+}
+
 bench_options bench_options_default(void)
 {
-    return (bench_options){.particles = 100000, .seconds = 240.0};
+    return (bench_options){.particles = 100000, .sizes = {.ratio = 1.0}, .seconds = 240.0};
 }
 
 /* About 10^8 particle-steps, that is some seconds, but not too few or too many steps. */
@@ -144,11 +150,11 @@ static status measure(simulation *sim, const bench_options *options, bench_figur
     int last = sim->scene->stage_count - 1;
     for (int stage = 0; stage < last; stage++) {
         TRY(simulation_begin_stage(sim, stage, why));
-        simulation_set_step(sim, BENCH_STEP_S);
+        simulation_set_step(sim, bench_step(options));
         TRY(simulation_advance(sim, REST_STEPS, why));
     }
     TRY(simulation_begin_stage(sim, last, why));
-    simulation_set_step(sim, BENCH_STEP_S);
+    simulation_set_step(sim, bench_step(options));
     TRY(time_steps(sim, steps, out, why));
     TRY(observe_particle_sums(sim, &sums, why));
     TRY(observe_contact_sums(sim, &contacts, why));
@@ -163,6 +169,7 @@ static status measure(simulation *sim, const bench_options *options, bench_figur
     bond_sums bonds;
     TRY(bonds_count(sim, &bonds, why));
     out->bonded = contacts.contacts > 0 ? (double)bonds.alive / (double)contacts.contacts : 0.0;
+    out->contacts = contacts.contacts;
     out->contacts_per_particle = 2.0 * (double)contacts.pairs / (double)sim->count;
     out->records_per_particle = (double)sim->table.record_count / (double)sim->count;
     device_describe(&sim->device->info, out->device, sizeof out->device);
@@ -181,6 +188,12 @@ void bench_name_effects(unsigned effects, char *text, size_t size)
             snprintf(text + used, size - used, "%s%.*s", used ? ", " : "", (int)length, word);
         word += length + (word[length] == '|');
     }
+}
+
+/* Of a contact, which two grains share or a grain has with a wall. */
+static double ns_a_contact(const bench_figures *f)
+{
+    return f->contacts > 0 ? 1e9 * f->wall_s / ((double)f->steps * (double)f->contacts) : 0.0;
 }
 
 static void print_figures(const bench_figures *f, const bench_options *options)
@@ -206,6 +219,7 @@ static void print_figures(const bench_figures *f, const bench_options *options)
         printf("one launch a batch\n");
     printf("  %-28s%.4g a grain\n", "device memory, bytes", f->bytes_per_particle);
     printf("  %-28s%.3f a grain, %.3f records in the table\n", "contacts with others", f->contacts_per_particle, f->records_per_particle);
+    printf("  %-28s%.4g ns each\n", "contact-steps", ns_a_contact(f));
     if (options->effects & BED_BONDS)
         printf("  %-28s%.3g %%\n", "of all contacts are bonded", 100.0 * f->bonded);
     printf("  %-28s%.3g J\n", "kinetic energy", f->kinetic_j);
@@ -215,13 +229,14 @@ static status write_json(const bench_figures *f, const bench_options *options, f
 {
     char effects[128];
     bench_name_effects(options->effects, effects, sizeof effects);
-    json_t *root = json_pack("{s:s, s:s, s:I, s:I, s:f, s:b, s:s, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:s, s:i, s:i, s:i, s:f}", "device", f->device, "precision", options->mixed ? "mixed" : "double",
-                             "particles", (json_int_t)f->particles, "steps", (json_int_t)f->steps, "step_s", BENCH_STEP_S, "rolling",
+    json_t *root = json_pack("{s:s, s:s, s:I, s:I, s:f, s:b, s:s, s:f, s:f, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:s, s:i, s:i, s:i, s:f, s:f, s:f, s:I, s:f}", "device", f->device, "precision", options->mixed ? "mixed" : "double",
+                             "particles", (json_int_t)f->particles, "steps", (json_int_t)f->steps, "step_s", bench_step(options), "rolling",
                              (int)(options->effects & BED_ROLLING), "effects", effects, "wall_s", f->wall_s, "particle_steps_per_s", f->particle_steps_per_s, "bytes_per_particle",
                              f->bytes_per_particle, "rebuilds", (json_int_t)f->rebuilds, "rebuild_s", f->rebuild_s, "pair_stage_s",
                              f->pair_s, "particle_stage_s", f->particle_s, "contacts_per_particle", f->contacts_per_particle,
                              "records_per_particle", f->records_per_particle, "kinetic_energy_j", f->kinetic_j, "step_form", f->form, "launches_per_step", f->launches, "chunk_records",
-                             f->chunk_records, "force_records", f->force_records, "bonded_share", f->bonded);
+                             f->chunk_records, "force_records", f->force_records, "bonded_share", f->bonded, "size_ratio", options->sizes.ratio, "large_share", options->sizes.large_share, "contacts",
+                             (json_int_t)f->contacts, "ns_per_contact_step", ns_a_contact(f));
     FILE *file = root ? fopen(options->json_path, "w") : NULL;
     bool whole = file && json_dumpf(root, file, JSON_INDENT(2)) == 0 && fputc('\n', file) != EOF;
     if (file && fclose(file) != 0)
@@ -245,7 +260,7 @@ static status run_bench(const bench_options *options, device *device, bench_figu
 {
     settled_bed of;
     simulation *sim = NULL;
-    TRY(settled_bed_make(options->particles, options->effects, device, options->kernels, &of, why));
+    TRY(settled_bed_make(options->particles, options->effects, &options->sizes, device, options->kernels, &of, why));
     status result = options->export_path ? export_bed(&of, options->export_path, why) : STATUS_OK;
     of.scene->precision = options->mixed ? PRECISION_MIXED : PRECISION_DOUBLE;
     of.scene->table.step_form = options->form;

@@ -2,6 +2,7 @@
 #ifndef CLAST_HOST_BENCH_H
 #define CLAST_HOST_BENCH_H
 #include "scene.h"
+#include "settled_bed.h"
 #include "status.h"
 
 #include <stddef.h>
@@ -11,6 +12,7 @@ typedef struct bench_options {
     int64_t particles;
     int64_t steps;           /* that are timed; 0: as many as suit the number of particles */
     unsigned effects;        /* BED_* (host/settled_bed.h), on top of contact and friction */
+    bed_sizes sizes;         /* of the grains of `bed` and `kernels` */
     bool mixed;              /* in mixed precision */
     step_form form;          /* of the steps of `bed` */
     const char *export_path; /* the bed as CSV, or NULL */
@@ -36,6 +38,7 @@ status bench_tune(const bench_options *options, failure *why);
 
 /* Step of the bed, s. */
 #define BENCH_STEP_S 1.0e-5
+double bench_step(const bench_options *options); /* of the bed that is asked for */
 /* Before minutes of work, not after. */
 status bench_check_writable(const char *path, failure *why);
 /* "rolling, conduction" */

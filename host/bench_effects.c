@@ -501,7 +501,7 @@ static status write_scenes(const effects_bench *b, failure *why)
 
 static status run_bench(effects_bench *b, failure *why)
 {
-    TRY(settled_bed_make(b->options->particles, 0, &b->device, b->options->kernels, &b->of, why));
+    TRY(settled_bed_make(b->options->particles, 0, NULL, &b->device, b->options->kernels, &b->of, why));
     memset(b->of.bed.spin, 0, sizeof *b->of.bed.spin * (size_t)b->of.bed.count); /* a bed that spins follows its spins under any law */
     list_cases(b);
     status result = b->options->scenes ? write_scenes(b, why) : run_passes(b, why);

@@ -153,7 +153,7 @@ static status measure(kernels_bench *b, failure *why)
     b->rounds[PHASE_STEP] = b->options->steps > 0 ? b->options->steps : KERNEL_STEPS;
     b->rounds[PHASE_TABLE] = b->rounds[PHASE_BETWEEN] = TABLES;
     TRY(simulation_begin_stage(sim, 0, why));
-    simulation_set_step(sim, BENCH_STEP_S);
+    simulation_set_step(sim, bench_step(b->options));
     sim->watch = &b->watch;
     TRY(simulation_advance(sim, WARM_UP_STEPS, why));
     for (bench_phase phase = PHASE_TABLE; phase < PHASES; phase++)
@@ -263,7 +263,7 @@ static status report(kernels_bench *b, failure *why)
 static status run_bench(kernels_bench *b, failure *why)
 {
     settled_bed of;
-    TRY(settled_bed_make(b->options->particles, b->options->effects, &b->device, b->options->kernels, &of, why));
+    TRY(settled_bed_make(b->options->particles, b->options->effects, &b->options->sizes, &b->device, b->options->kernels, &of, why));
     of.scene->precision = b->options->mixed ? PRECISION_MIXED : PRECISION_DOUBLE;
     of.scene->table.step_form = STEP_TWO_KERNELS;
     b->particles = of.bed.count;

@@ -78,7 +78,7 @@ static status start_bed(tune_bench *t, int64_t particles, const tuning *with, st
 {
     double s = 0.0;
     *out = (open_bed){.steps = 4};
-    TRY(settled_bed_make(particles, BED_ROLLING, &t->device, t->options->kernels, &out->of, why));
+    TRY(settled_bed_make(particles, BED_ROLLING, NULL, &t->device, t->options->kernels, &out->of, why));
     out->of.scene->precision = t->options->mixed || !t->device.info.fp64 ? PRECISION_MIXED : PRECISION_DOUBLE;
     out->of.scene->table.step_form = form;
     t->device.tuning = *with;

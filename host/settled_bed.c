@@ -17,8 +17,10 @@
 
 #define RADIUS_M       1.0e-3
 #define RADIUS_SPREAD  0.1
+#define MODULUS_PA     5.0e6
 #define SETTLED        0.6 /* volume fraction, as the box is laid out */
 #define POURED         0.5
+#define POURED_MIXED   0.45 /* of grains of two sizes */
 #define PART_LEAST     8000
 #define PART_MOST      20000
 #define PART_WANTED    15000.0
@@ -27,13 +29,23 @@
 #define SETTLE_MAX_S   3.0
 #define SETTLE_CHECK   500  /* steps between looks at the energy */
 #define SETTLE_DAMPING 20.0 /* 1/s */
+#define MIXED_DAMPING  40.0 /* small grains fall on between large ones */
+#define MIXED_REST     1.0e-3 /* of which a few still roll through pores */
 #define REST_DAMPING   600.0 /* 1/s, of a bed with bonds that is taken up without the history of its friction: critical for the slowest waves in it */
 #define BONDING_STRAIN 0.055 /* of 100,000 grains */
 
-/* Sum of volumes of so many grains on average: <r^3> of the uniform distribution. */
-static double solid_volume(double particles)
+static const bed_sizes all_alike = {.ratio = 1.0, .large_share = 0.0};
+
+static int64_t large_of(const bed_sizes *sizes, int64_t particles)
 {
-    return particles * 4.0 / 3.0 * M_PI * pow(RADIUS_M, 3) * (1.0 + RADIUS_SPREAD * RADIUS_SPREAD);
+    return llround(sizes->large_share * (double)particles);
+}
+
+/* Sum of volumes of so many grains on average: <r^3> of the uniform distribution. */
+static double solid_volume(double particles, const bed_sizes *sizes)
+{
+    double mean_cube = 1.0 + sizes->large_share * (pow(sizes->ratio, 3) - 1.0);
+    return particles * mean_cube * 4.0 / 3.0 * M_PI * pow(RADIUS_M, 3) * (1.0 + RADIUS_SPREAD * RADIUS_SPREAD);
 }
 
 static double layout_cost(int64_t particles, int columns, int rows, int64_t part)
@@ -42,7 +54,7 @@ static double layout_cost(int64_t particles, int columns, int rows, int64_t part
     return cost + (part * columns * rows == particles ? 0.0 : 0.2);
 }
 
-bed_layout settled_bed_layout(int64_t particles)
+bed_layout settled_bed_layout(int64_t particles, const bed_sizes *sizes)
 {
     bed_layout best = {.columns = 1, .rows = 1, .part = particles};
     double least = INFINITY;
@@ -55,11 +67,12 @@ bed_layout settled_bed_layout(int64_t particles)
             least = layout_cost(particles, columns, rows, part);
             best = (bed_layout){.columns = columns, .rows = rows, .part = part};
         }
+    best.sizes = sizes ? *sizes : all_alike;
     best.surplus = best.part * best.columns * best.rows - particles;
-    best.side = cbrt(solid_volume((double)particles) / SETTLED);
+    best.side = cbrt(solid_volume((double)particles, &best.sizes) / SETTLED);
     best.part_x = best.side / best.columns;
     best.part_y = best.side / best.rows;
-    best.height = solid_volume((double)best.part) / (POURED * best.part_x * best.part_y);
+    best.height = solid_volume((double)best.part, &best.sizes) / ((large_of(&best.sizes, particles) > 0 ? POURED_MIXED : POURED) * best.part_x * best.part_y);
     return best;
 }
 
@@ -85,7 +98,16 @@ static double bonding_strain(int64_t particles)
 
 /* A bed settles under bonds that form whenever they can; where it then rests, those contacts are bonded that are deeper than the critical overlap,
  * and the same ones bond when it is taken up again. */
-static void print_scene(FILE *out, int64_t whole, int64_t particles, double x, double y, double height, unsigned effects, bool settling, bool slippery)
+static void print_grains(FILE *out, const char *name, int64_t count, double size, const double region[3])
+{
+    if (count > 0)
+        fprintf(out, "  - {name: %s, material: glass, generator: random, count: %lld, temperature_k: 300,\n     radius_m: {distribution: uniform, low: %.17g, high: %.17g},\n"
+                     "     region: {low_m: [0, 0, 0], high_m: [%.17g, %.17g, %.17g]}}\n",
+                name, (long long)count, size * RADIUS_M * (1.0 - RADIUS_SPREAD), size * RADIUS_M * (1.0 + RADIUS_SPREAD), region[0], region[1], region[2]);
+}
+
+static void print_scene(FILE *out, int64_t whole, int64_t particles, const bed_sizes *sizes, const double region[3], unsigned effects, bool settling,
+                        bool slippery)
 {
     static const char *const sides[] = {"west", "south", "east", "north"};
     fprintf(out, "title: Settled bed\ngravity_m_s2: [0, 0, -%g]\neffects:\n", GRAVITY);
@@ -102,23 +124,23 @@ static void print_scene(FILE *out, int64_t whole, int64_t particles, double x, d
         fprintf(out, "  - {slot: bond, law: adhesion, criterion: %s}\n", settling ? "always" : "at_time");
     bool damped = (effects & BED_BONDS) && !settling;
     if (settling || damped)
-        fprintf(out, "  - {slot: body, law: viscous_damping, coefficient: %g}\n", settling ? SETTLE_DAMPING : REST_DAMPING);
+        fprintf(out, "  - {slot: body, law: viscous_damping, coefficient: %g}\n", !settling ? REST_DAMPING : sizes->ratio > 1.0 ? MIXED_DAMPING : SETTLE_DAMPING);
     if (effects & (BED_CONVECTION | BED_RADIATION))
         fprintf(out, "environment: {temperature_k: 350}\n");
-    fprintf(out, "materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3, conductivity_w_mk: 1,\n"
-                 "             specific_heat_j_kgk: 800, emissivity: 0.9}]\ninteractions:\n");
+    fprintf(out, "materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: %.17g, poissons_ratio: 0.3, conductivity_w_mk: 1,\n"
+                 "             specific_heat_j_kgk: 800, emissivity: 0.9}]\ninteractions:\n", MODULUS_PA * sizes->ratio);
     fprintf(out, "  - {between: default, restitution: 0.5, friction_static: 0.5, rolling_friction: 0.01, bond_equilibrium_strain: %.6g,\n     bond_damping_ratio: 0.3}\n", bonding_strain(whole));
     for (int s = 0; s < 4 && slippery; s++) /* half the overlap and twice r* of a contact with the mirror image */
         fprintf(out, "  - {between: [glass, %s], friction_static: 0, bond_equilibrium_strain: %.6g}\n", sides[s], 0.25 * bonding_strain(whole));
-    fprintf(out, "particles:\n  - {name: bed, material: glass, generator: random, count: %lld, temperature_k: 300,\n", (long long)particles);
-    fprintf(out, "     radius_m: {distribution: uniform, low: %.17g, high: %.17g},\n", RADIUS_M * (1.0 - RADIUS_SPREAD),
-            RADIUS_M * (1.0 + RADIUS_SPREAD));
-    fprintf(out, "     region: {low_m: [0, 0, 0], high_m: [%.17g, %.17g, %.17g]}}\n", x, y, height);
-    print_walls(out, x, y, effects & BED_CONDUCTION);
+    int64_t large = large_of(sizes, particles);
+    fprintf(out, "particles:\n");
+    print_grains(out, "large", large, sizes->ratio, region);
+    print_grains(out, "bed", particles - large, 1.0, region);
+    print_walls(out, region[0], region[1], effects & BED_CONDUCTION);
     fprintf(out, "stages: [{name: rest, until: {steps: 1}}%s]\n", damped ? ", {name: at_rest, until: {steps: 1}, effects_off: [body]}" : "");
 }
 
-static status make_scene(int64_t whole, int64_t particles, double x, double y, double height, unsigned effects, bool settling, bool slippery,
+static status make_scene(int64_t whole, int64_t particles, const bed_sizes *sizes, const double region[3], unsigned effects, bool settling, bool slippery,
                          scene **out, failure *why)
 {
     char *text = NULL;
@@ -126,7 +148,7 @@ static status make_scene(int64_t whole, int64_t particles, double x, double y, d
     FILE *stream = open_memstream(&text, &size);
     if (!stream)
         return fail(why, STATUS_ERROR, "out of memory");
-    print_scene(stream, whole, particles, x, y, height, effects, settling, slippery);
+    print_scene(stream, whole, particles, sizes, region, effects, settling, slippery);
     fclose(stream);
     status result = scene_read_text(text, "settled bed", 0, NULL, out, why);
     free(text);
@@ -145,7 +167,7 @@ static status take_field(simulation *sim, const char *name, double (*out)[3], fa
 }
 
 /* The step follows the limit, which a falling and then loaded bed lowers. */
-static status settle(simulation *sim, failure *why)
+static status settle(simulation *sim, double rest, failure *why)
 {
     particle_sums sums;
     double start = clock_seconds();
@@ -158,7 +180,7 @@ static status settle(simulation *sim, failure *why)
         TRY(observe_particle_sums(sim, &sums, why));
         if (!isfinite(sums.kinetic) || sim->count < sim->id_count)
             return fail(why, STATUS_ERROR, "the bed did not settle: its kinetic energy is %g J after %g s", sums.kinetic, sim->time);
-    } while (sums.kinetic > REST * GRAVITY * sums.weight_radius && sim->time < SETTLE_MAX_S);
+    } while (sums.kinetic > rest * GRAVITY * sums.weight_radius && sim->time < SETTLE_MAX_S);
     fprintf(stderr, "%lld grains came to rest after %.2f s, in %.1f s\n", (long long)sim->id_count, sim->time, clock_seconds() - start);
     return STATUS_OK;
 }
@@ -184,13 +206,13 @@ static void find_bounds(bed *b)
 }
 
 /* Lets the grains come to rest under the effects. */
-static status come_to_rest(const scene *under, device *device, const char *kernels, bed *grains, failure *why)
+static status come_to_rest(const scene *under, double rest, device *device, const char *kernels, bed *grains, failure *why)
 {
     simulation *sim = NULL;
     find_bounds(grains);
     status result = simulation_create(under, grains, device, kernels, &sim, why);
     if (result == STATUS_OK)
-        result = settle(sim, why);
+        result = settle(sim, rest, why);
     if (result == STATUS_OK)
         result = take_field(sim, "position", grains->position, why);
     if (result == STATUS_OK)
@@ -206,12 +228,13 @@ static status pour(const bed_request *of, const bed_layout *l, bed *grains, fail
 {
     scene *poured = NULL;
     bool bonds = of->effects & BED_BONDS;
-    TRY(make_scene(of->particles, l->part, l->part_x, l->part_y, l->height, of->effects & BED_BONDS, true, l->columns * l->rows > 1, &poured, why));
+    const double region[3] = {l->part_x, l->part_y, l->height};
+    TRY(make_scene(of->particles, l->part, &l->sizes, region, of->effects & BED_BONDS, true, l->columns * l->rows > 1, &poured, why));
     if (!of->device->info.fp64)
         poured->precision = PRECISION_MIXED;
     status result = bonds ? STATUS_OK : bed_generate(poured, grains, why);
     if (result == STATUS_OK)
-        result = come_to_rest(poured, of->device, of->kernels, grains, why);
+        result = come_to_rest(poured, l->sizes.ratio > 1.0 ? MIXED_REST : REST, of->device, of->kernels, grains, why);
     scene_free(poured);
     return result;
 }
@@ -223,7 +246,10 @@ static bool cache_file(const bed_request *of, const bed_layout *l, char *path, s
     char directory[3072];
     if (!cache_directory(directory, sizeof directory))
         return false;
-    snprintf(path, size, "%s/settled-bed-%d-%lld-%dx%d%s.h5", directory, CACHE_VERSION, (long long)of->particles, l->columns, l->rows,
+    char sizes[64] = "";
+    if (large_of(&l->sizes, of->particles) > 0)
+        snprintf(sizes, sizeof sizes, "-%g-%g", l->sizes.ratio, l->sizes.large_share);
+    snprintf(path, size, "%s/settled-bed-%d-%lld-%dx%d%s%s.h5", directory, CACHE_VERSION, (long long)of->particles, l->columns, l->rows, sizes,
              of->effects ? "-bonds" : "");
     return true;
 }
@@ -354,19 +380,21 @@ status settled_bed_assemble(const bed_layout *l, const bed *part, int64_t partic
     return STATUS_OK;
 }
 
-status settled_bed_make(int64_t particles, unsigned effects, device *device, const char *kernels, settled_bed *out, failure *why)
+status settled_bed_make(int64_t particles, unsigned effects, const bed_sizes *sizes, device *device, const char *kernels, settled_bed *out,
+                        failure *why)
 {
     *out = (settled_bed){0};
     if (particles < SETTLED_BED_LEAST || particles > INT32_MAX)
         return fail(why, STATUS_BAD_INPUT, "the bed can have %d to %d particles, not %lld", SETTLED_BED_LEAST, INT32_MAX,
                     (long long)particles);
-    bed_layout l = settled_bed_layout(particles);
+    bed_layout l = settled_bed_layout(particles, sizes);
+    const double region[3] = {l.side, l.side, l.height};
     bed part;
     TRY(get_part(&(bed_request){particles, effects & BED_BONDS, device, kernels}, &l, &part, why));
     status result = settled_bed_assemble(&l, &part, particles, &out->bed, why);
     bed_free(&part);
     if (result == STATUS_OK)
-        result = make_scene(particles, particles, l.side, l.side, l.height, effects, false, false, &out->scene, why);
+        result = make_scene(particles, particles, &l.sizes, region, effects, false, false, &out->scene, why);
     out->side_m = l.side;
     if (result != STATUS_OK)
         settled_bed_free(out);

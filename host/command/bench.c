@@ -1,14 +1,28 @@
 /* clast bench */
 #include "../bench.h"
 #include "../parameter.h"
-#include "../settled_bed.h"
 #include "../scene.h"
+#include "../settled_bed.h"
 #include "command.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { KEY_PRECISION = 256, KEY_ROLLING, KEY_EFFECTS, KEY_EXPORT, KEY_JSON, KEY_CSV, KEY_SECONDS, KEY_ONLY, KEY_SCENES, KEY_FORGET, KEY_STEP_FORM };
+enum {
+    KEY_PRECISION = 256,
+    KEY_ROLLING,
+    KEY_EFFECTS,
+    KEY_EXPORT,
+    KEY_JSON,
+    KEY_CSV,
+    KEY_SECONDS,
+    KEY_ONLY,
+    KEY_SCENES,
+    KEY_FORGET,
+    KEY_STEP_FORM,
+    KEY_RATIO,
+    KEY_SHARE
+};
 
 /* A benchmark, and the options that it takes beside device, kernels and number of particles. */
 typedef struct benchmark {
@@ -56,7 +70,8 @@ static void read_effects_option(const struct argp_state *state, const char *argu
         snprintf(one, sizeof one, "%.*s", (int)(length < sizeof one ? length : sizeof one - 1), word);
         int index = words_find(bed_effect_words, one);
         if (index < 0)
-            option_refuse(state, "--effects: there is no effect `%s`; this version has rolling, conduction, convection, radiation and bonds", one);
+            option_refuse(state,
+                          "--effects: there is no effect `%s`; this version has rolling, conduction, convection, radiation and bonds", one);
         *effects |= 1u << index;
         word += length + (word[length] == ',');
     }
@@ -82,6 +97,12 @@ static error_t parse_bench(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_STEP_FORM:
         input->options.form = read_form(state, argument);
+        return 0;
+    case KEY_RATIO:
+        input->options.sizes.ratio = option_number(state, "--size-ratio", argument, 1.0, 50.0);
+        return 0;
+    case KEY_SHARE:
+        input->options.sizes.large_share = option_number(state, "--large-share", argument, 0.0, 1.0);
         return 0;
     case KEY_EFFECTS:
         read_effects_option(state, argument, &input->options.effects);
@@ -115,6 +136,8 @@ static error_t parse_bench(int key, char *argument, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         input->chosen = find_benchmark(state, input->what);
+        if ((input->options.sizes.ratio > 1.0) != (input->options.sizes.large_share > 0.0))
+            option_refuse(state, "--size-ratio and --large-share come together: how large, and how many");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -125,9 +148,13 @@ static const struct argp_option bench_option[] = {
     {"particles", 'n', "N", 0, "Number of particles, as in 1e5 (100000)", 0},
     {"steps", 'S', "STEPS", 0, "Steps that are timed, after 200 of warm-up", 0},
     {"precision", KEY_PRECISION, "P", 0, "auto, double or mixed", 0},
-    {"step-form", KEY_STEP_FORM, "FORM", 0, "How `bed` takes its steps: auto, two_kernels, one_group, phases or team, as in contact_table.step_form", 0},
+    {"step-form", KEY_STEP_FORM, "FORM", 0,
+     "How `bed` takes its steps: auto, two_kernels, one_group, phases or team, as in contact_table.step_form", 0},
+    {"size-ratio", KEY_RATIO, "X", 0, "With some grains X times as large as the others, and all X times as stiff (bed, kernels)", 0},
+    {"large-share", KEY_SHARE, "F", 0, "The share of large grains by number, as 0.01", 0},
     {"rolling", KEY_ROLLING, NULL, 0, "With rolling resistance", 0},
-    {"effects", KEY_EFFECTS, "A,B,...", 0, "With these on top of contact and friction, of rolling, conduction, convection, radiation, bonds", 0},
+    {"effects", KEY_EFFECTS, "A,B,...", 0,
+     "With these on top of contact and friction, of rolling, conduction, convection, radiation, bonds", 0},
     {"export", KEY_EXPORT, "FILE.csv", 0, "Write the bed as it is before the warm-up", 0},
     {"json", KEY_JSON, "FILE.json", 0, "Write the figures as JSON", 0},
     {"csv", KEY_CSV, "FILE.csv", 0, "Write them as CSV (effects, kernels)", 0},
@@ -143,7 +170,8 @@ static const struct argp bench_argp = {
     .parser = parse_bench,
     .args_doc = "bed|effects|kernels|tune",
     .doc = "Time a settled bed in a box with five frictional walls: a step, what every law adds to it, or every kernel; or find"
-            " what is fastest on this device and keep it for later runs (tune).\vA settled bed of up to 20,000 particles is made once and kept in"
+           " what is fastest on this device and keep it for later runs (tune).\vA settled bed of up to 20,000 particles is made once and "
+           "kept in"
            " ${XDG_CACHE_HOME:-~/.cache}/clast; larger beds are tiled from it.",
     .children = bench_children,
 };

@@ -21,7 +21,7 @@ static void test_layouts(void **state)
     (void)state;
     const int64_t sizes[] = {100, 10000, 20000, 20001, 50000, 99991, 100000, 1000000, 10000000, 100000000};
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
-        bed_layout l = settled_bed_layout(sizes[k]);
+        bed_layout l = settled_bed_layout(sizes[k], NULL);
         int64_t images = (int64_t)l.columns * l.rows;
         assert_int_equal(l.part * images - l.surplus, sizes[k]);
         assert_true(l.surplus >= 0 && l.surplus < images);
@@ -31,6 +31,10 @@ static void test_layouts(void **state)
         /* As wide as a bed of volume fraction 0.6 is high. */
         double volume = (double)sizes[k] * 4.0 / 3.0 * M_PI * 1.01e-9;
         assert_true(fabs(volume / (0.6 * pow(l.side, 3)) - 1.0) < 1e-12);
+        /* One grain in a hundred a thousand times the volume of the others. */
+        bed_layout two = settled_bed_layout(sizes[k], &(bed_sizes){.ratio = 10.0, .large_share = 0.01});
+        assert_int_equal(two.part, l.part);
+        assert_true(fabs(pow(two.side / l.side, 3) / (0.99 + 0.01 * 1000.0) - 1.0) < 1e-12);
     }
 }
 
@@ -126,17 +130,26 @@ static void test_cache(void **state)
     assert_non_null(mkdtemp(folder));
     setenv("XDG_CACHE_HOME", folder, 1);
     settled_bed first, again;
-    assert_int_equal(settled_bed_make(300, false, &device, NULL, &first, &why), STATUS_OK);
+    assert_int_equal(settled_bed_make(300, 0, NULL, &device, NULL, &first, &why), STATUS_OK);
     check_rest(&first, &device);
     snprintf(path, sizeof path, "%s/clast/settled-bed-1-300-1x1.h5", folder);
     for (int damaged = 0; damaged < 2; damaged++) {
         assert_int_equal(damaged ? truncate(path, 1000) : access(path, R_OK), 0);
-        assert_int_equal(settled_bed_make(300, true, &device, NULL, &again, &why), STATUS_OK);
+        assert_int_equal(settled_bed_make(300, BED_ROLLING, NULL, &device, NULL, &again, &why), STATUS_OK);
         check_same(&first.bed, &again.bed);
         settled_bed_free(&again);
     }
     settled_bed_free(&first);
-    assert_int_equal(settled_bed_make(SETTLED_BED_LEAST - 1, false, &device, NULL, &again, &why), STATUS_BAD_INPUT);
+    const bed_sizes two = {.ratio = 2.0, .large_share = 0.05};
+    assert_int_equal(settled_bed_make(120, 0, &two, &device, NULL, &again, &why), STATUS_OK);
+    int64_t large = 0;
+    for (int64_t i = 0; i < again.bed.count; i++)
+        large += again.bed.radius[i] > 1.5e-3;
+    assert_int_equal(large, 6);
+    settled_bed_free(&again);
+    snprintf(path, sizeof path, "%s/clast/settled-bed-1-120-1x1-2-0.05.h5", folder);
+    assert_int_equal(access(path, R_OK), 0);
+    assert_int_equal(settled_bed_make(SETTLED_BED_LEAST - 1, 0, NULL, &device, NULL, &again, &why), STATUS_BAD_INPUT);
     device_close(&device);
     char command[300];
     snprintf(command, sizeof command, "rm -r %s", folder);
