@@ -50,8 +50,13 @@ status bed_result(const scene *s, int group, bed *b, failure *why)
     if (!g->path)
         return bed_refuse(s, group, why, "the result generator needs a path");
     results_particles p = {0};
-    TRY(results_read_particles(g->path, g->frame, &p, why));
-    status result = take_rows(s, group, &p, b, why);
+    failure unread;
+    status result = results_read_particles(g->path, g->frame, &p, &unread);
+    if (result == STATUS_BAD_INPUT)
+        return bed_refuse(s, group, why, "%s", unread.text);
+    if (result != STATUS_OK)
+        return fail(why, result, "%s", unread.text);
+    result = take_rows(s, group, &p, b, why);
     results_particles_free(&p);
     return result;
 }

@@ -16,14 +16,26 @@ static void begin_message(char *out, size_t size, const char *path, bool with_pl
         snprintf(out, size, "%s", path);
 }
 
-static status parse_failure(const yaml_parser_t *parser, const char *path, bool with_place, failure *why)
+static yaml_mark_t mark_of_byte(const char *text, size_t offset)
+{
+    yaml_mark_t mark = {.index = offset};
+    for (size_t k = 0; k < offset; k++) {
+        mark.column = text[k] == '\n' ? 0 : mark.column + 1;
+        mark.line += text[k] == '\n';
+    }
+    return mark;
+}
+
+static status parse_failure(const yaml_parser_t *parser, const char *text, const char *path, bool with_place, failure *why)
 {
     char at[1024];
     const char *problem = parser->problem ? parser->problem : "the parser gave up";
     if (parser->error == YAML_MEMORY_ERROR)
         return fail(why, STATUS_ERROR, "%s: out of memory while reading the YAML text", path);
-    if (parser->error == YAML_READER_ERROR)
-        return fail(why, STATUS_BAD_INPUT, "%s: not a text file in UTF-8: %s at byte %zu", path, problem, parser->problem_offset);
+    if (parser->error == YAML_READER_ERROR) {
+        begin_message(at, sizeof at, path, with_place, mark_of_byte(text, parser->problem_offset));
+        return fail(why, STATUS_BAD_INPUT, "%s: not a text file in UTF-8: %s", at, problem);
+    }
     begin_message(at, sizeof at, path, with_place, parser->problem_mark);
     if (strstr(problem, "cannot start any token"))
         return fail(why, STATUS_BAD_INPUT, "%s: not valid YAML: %s (a tab? indent with spaces; or a text that needs quotes)", at, problem);
@@ -127,7 +139,7 @@ static status inspect(const char *text, size_t length, const char *path, bool wi
     status result = STATUS_OK;
     for (bool last = false; !last && result == STATUS_OK;) {
         if (!yaml_parser_parse(&parser, &event)) {
-            result = parse_failure(&parser, path, with_place, why);
+            result = parse_failure(&parser, text, path, with_place, why);
             break;
         }
         last = event.type == YAML_STREAM_END_EVENT;
@@ -135,8 +147,10 @@ static status inspect(const char *text, size_t length, const char *path, bool wi
         yaml_event_delete(&event);
     }
     yaml_parser_delete(&parser);
+    char begin[1024];
+    begin_message(begin, sizeof begin, path, with_place, (yaml_mark_t){0});
     if (result == STATUS_OK && in.documents == 0)
-        result = fail(why, STATUS_BAD_INPUT, "%s: holds no YAML; a scene begins with keys such as `materials:`", path);
+        result = fail(why, STATUS_BAD_INPUT, "%s: holds no YAML; a scene begins with keys such as `materials:`", begin);
     return result;
 }
 
@@ -147,7 +161,7 @@ status document_parse(yaml_document_t *out, const char *text, size_t length, con
     if (!yaml_parser_initialize(&parser))
         return fail(why, STATUS_ERROR, "%s: out of memory", path);
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
-    status result = yaml_parser_load(&parser, out) ? STATUS_OK : parse_failure(&parser, path, with_place, why);
+    status result = yaml_parser_load(&parser, out) ? STATUS_OK : parse_failure(&parser, text, path, with_place, why);
     yaml_parser_delete(&parser);
     return result;
 }

@@ -198,9 +198,11 @@ static status next_step(const walk *w, const char **rest, char *step, bool *sele
     return STATUS_OK;
 }
 
-static status take_step(walk *w, const char *step, bool selector, bool last, int value)
+/* after: the character that follows the step in the path. */
+static status take_step(walk *w, const char *step, bool selector, char after, int value)
 {
     document *d = w->d;
+    bool last = after == '\0';
     char what[128];
     if (selector) {
         int index = 0;
@@ -216,6 +218,8 @@ static status take_step(walk *w, const char *step, bool selector, bool last, int
         if (last)
             return set_key(w, step, value);
         int next = document_find(d, w->node, step);
+        if (!next && after == '[')
+            return set_fail(w, "the scene has no list `%s%s%s` to choose an entry from", w->done, w->done[0] ? "." : "", step);
         if (!next) {
             next = yaml_document_add_mapping(&d->yaml, NULL, YAML_FLOW_MAPPING_STYLE);
             TRY(add_pair(w, step, next));
@@ -236,7 +240,7 @@ static status walk_path(walk *w, const char *path, int value)
         return set_fail(w, "the path must begin with a key of the scene, like `walls[floor].point_m`");
     do {
         TRY(next_step(w, &rest, step, &selector));
-        TRY(take_step(w, step, selector, *rest == '\0', value));
+        TRY(take_step(w, step, selector, *rest, value));
     } while (*rest);
     return STATUS_OK;
 }

@@ -12,13 +12,17 @@ static const struct {
 } units[] = {
     {"_kg_m3", "kg/m^3"}, {"_j_kgk", "J/(kg K)"},
     {"_rad_s", "rad/s"},  {"_w_m2k", "W/(m^2 K)"},
-    {"_w_m3", "W/m^3"},   {"_w_mk", "W/(m K)"},
-    {"_pa_s", "Pa s"},
+    {"_j_mol", "J/mol"},  {"_w_m3", "W/m^3"},
+    {"_w_mk", "W/(m K)"}, {"_pa_s", "Pa s"},
+    {"_m3_s", "m^3/s"},   {"_j_m2", "J/m^2"},
     {"_m_s2", "m/s^2"},   {"_m_s", "m/s"},
     {"_n_m", "N/m"},      {"_rad", "rad"},
-    {"_pa", "Pa"},        {"_hz", "Hz"},
-    {"_m", "m"},          {"_s", "s"},
-    {"_k", "K"},          {"_j", "J"},
+    {"_1_k", "1/K"},      {"_1_m", "1/m"},
+    {"_k_s", "K/s"},      {"_m3", "m^3"},
+    {"_m2", "m^2"},       {"_pa", "Pa"},
+    {"_hz", "Hz"},        {"_m", "m"},
+    {"_s", "s"},          {"_k", "K"},
+    {"_j", "J"},
 };
 
 const char *parameter_unit(const char *key)

@@ -23,8 +23,8 @@ typedef struct domain {
     double low_m[3], high_m[3];
     bool periodic[3];
     bool delete_leaving;
+    place at;
 } domain;
-
 
 typedef struct material {
     char *name;

@@ -1,4 +1,5 @@
 /* The scene reference: the parameter table, the law descriptors and the property rows as one Markdown page. */
+#include "property.h"
 #include "scene_table.h"
 
 #include <math.h>
@@ -92,7 +93,13 @@ static void write_properties(FILE *page, const property *const *all)
     for (const property *const *p = all; *p; p++) {
         parameter row = parameter_of_property(*p);
         char shown[64] = "needed where a law reads it";
-        if ((*p)->fallback_property)
+        if (*p == &property_normal_damping)
+            snprintf(shown, sizeof shown, "what `restitution` gives, else 0");
+        else if (*p == &property_restitution)
+            snprintf(shown, sizeof shown, "none");
+        else if (*p == &property_bond_shear_modulus)
+            snprintf(shown, sizeof shown, "0.4 of bond_youngs_modulus_pa");
+        else if ((*p)->fallback_property)
             snprintf(shown, sizeof shown, "that of %s", (*p)->fallback_property->key);
         else if (!isnan((*p)->fallback))
             snprintf(shown, sizeof shown, "%.10g", (*p)->fallback);

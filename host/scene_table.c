@@ -21,7 +21,7 @@ static const parameter domain_rows[] = {
 };
 const section domain_section = {.name = "domain", .doc = "The box that holds the particles. Without it space is unbounded.",
                                 .row = domain_rows,
-                                .finish = finish_domain};
+                                .placed = true, .at = offsetof(domain, at), .finish = finish_domain};
 
 static const parameter gas_rows[] = {
     {.key = "velocity_m_s", .type = PARAMETER_OTHER, .read = read_vector_anywhere, .unit = "m/s", AT(environment, gas_velocity_m_s),
@@ -392,7 +392,7 @@ const section stage_repeat_section = {.name = "repetition of stages", .doc = "Ro
 static const parameter stage_rows[] = {
     {.key = "name", .type = PARAMETER_NAME, .shown = "stage1, stage2, ...", AT(scene_stage, name), .doc = "name of the stage"},
     {.key = "until", .type = PARAMETER_SECTION, .section = &until_section, .required = true,
-     .doc = "when the stage ends: `time_s`, `steps`, `rest` or `rest_j`"},
+     .doc = "when the stage ends: `time_s`, `steps`, `rest`, `rest_j` or `steady_k_s`"},
     {.key = "step_s", .type = PARAMETER_NUMBER, .unit = "s", POSITIVE, .word = "auto", .fallback = "auto", AT(scene_stage, step_s),
      .doc = "time step"},
     {.key = "allow_unstable_step", .type = PARAMETER_FLAG, .fallback = "false", AT(scene_stage, allow_unstable_step),
@@ -454,7 +454,7 @@ static const parameter guard_rows[] = {
     {.key = "overlap_max", .type = PARAMETER_NUMBER, .fallback = "0.3", .low = 0, .high = 2, .open_low = true, AT(guard_spec, overlap_max),
      .doc = "largest overlap, as a fraction of the smaller radius"},
     {.key = "move_max", .type = PARAMETER_NUMBER, .fallback = "0.5", .low = 0, .high = 1e6, .open_low = true, AT(guard_spec, move_max),
-     .doc = "largest move in one step, as a fraction of the skin"},
+     .doc = "largest move in one step, as a fraction of the skin (of a tenth of the mean radius, where the skin is smaller)"},
     {0},
 };
 const section guard_section = {.name = "guards", .doc = "Checks that stop a run that goes wrong.", .row = guard_rows};

@@ -52,8 +52,8 @@ static status check_periods(const simulation *sim, failure *why)
     for (int c = 0; d->given && c < 3; c++)
         if (d->periodic[c] && d->high_m[c] - d->low_m[c] < least)
             return fail(why, STATUS_BAD_INPUT,
-                        "%s: domain: the periodic length along %c is %g m; it must be at least %g m (two largest diameters and the skin, twice)",
-                        sim->scene->path, "xyz"[c], d->high_m[c] - d->low_m[c], least);
+                        "%s:%d:%d: domain: the periodic length along %c is %g m; it must be at least %g m (two largest diameters and the skin, twice)",
+                        sim->scene->path, d->at.line, d->at.column, "xyz"[c], d->high_m[c] - d->low_m[c], least);
     return STATUS_OK;
 }
 

@@ -2,6 +2,7 @@
 #include "clock.h"
 #include "simulation.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 double simulation_time_after(const simulation *sim, int64_t steps)
@@ -13,7 +14,11 @@ void simulation_set_step(simulation *sim, double dt)
 {
     sim->segment_time = sim->time;
     sim->segment_step = sim->step;
-    sim->dt = sim->mixed ? (double)(float)dt : dt; /* time and motion agree on it */
+    sim->dt = dt;
+    if (sim->mixed) { /* time and motion agree on it; rounded up, so that whole steps to the end of a stage leave no sliver for one more */
+        float nearest = (float)dt;
+        sim->dt = (double)((double)nearest < dt ? nextafterf(nearest, INFINITY) : nearest);
+    }
 }
 
 status simulation_count_leavers(simulation *sim, int64_t kept, failure *why)

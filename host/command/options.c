@@ -97,7 +97,7 @@ static error_t parse_set(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option set_option[] = {
-    {"set", 's', "PATH=VALUE", 0, "Change a key of the scene, as in walls[floor].friction_static=0.3; may be repeated", 0},
+    {"set", 's', "PATH=VALUE", 0, "Change a key of the scene, as in interactions[default].friction_static=0.3; may be repeated", 0},
     {0},
 };
 static const struct argp set_options_argp = {.options = set_option, .parser = parse_set};

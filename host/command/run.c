@@ -79,7 +79,7 @@ static const struct argp_option run_option[] = {
     {"sweep", KEY_SWEEP, "PATH=A,B,C", 0,
      "Run once for each value, into the folder --out, with one table (sweep.csv); repeated: every combination", 0},
     {"jobs", KEY_JOBS, "N", 0, "Runs of a sweep at a time (default: one a core where beds are small)", 0},
-    {"quiet", 'q', NULL, 0, "Show no progress", 0},
+    {"quiet", 'q', NULL, 0, "Show neither progress nor warnings", 0},
     {0},
 };
 static const struct argp_child run_children[] = {{.argp = &scene_input_argp}, {0}};
@@ -95,7 +95,7 @@ static const struct argp run_argp = {
 
 static const struct argp_option resume_option[] = {
     {"out", 'o', "RESULT.h5", 0, "Start a new results file instead of going on with the run's own", 0},
-    {"quiet", 'q', NULL, 0, "Show no progress", 0},
+    {"quiet", 'q', NULL, 0, "Show neither progress nor warnings", 0},
     {0},
 };
 static const struct argp_child resume_children[] = {{.argp = &device_options_argp}, {0}};

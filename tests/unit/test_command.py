@@ -8,6 +8,8 @@ import subprocess
 import tempfile
 import unittest
 
+import h5py
+
 CLAST = os.environ["CLAST"]
 COMMANDS = ["run", "resume", "check", "devices", "bench", "study", "reference"]
 OK, ERROR, BAD_INPUT, DEVICE = 0, 1, 2, 3
@@ -192,6 +194,30 @@ class SceneFile(unittest.TestCase):
         for arguments in (["check", self.scene], ["run", self.scene, "--out", self.result]):
             message = self.refused(*arguments)
             self.assertTrue(message.startswith(f"{self.scene}:{line}:1: "), message)
+
+    def test_what_turns_out_later_has_its_place_too(self):
+        """A results file that is not there, and a period too short for the grains, which their radii and the skin say."""
+        one = next(k for k, line in enumerate(SCENE.split("\n"), 1) if "name: one" in line)
+        with open(self.scene, "w") as file:
+            file.write(SCENE.replace("generator: list", "generator: result, file: none.h5").replace("items: [{position_m: [0, 0, 0.01], radius_m: 1.0e-3}]",
+                                                                                                    "frame: 0"))
+        message = self.refused("check", self.scene)
+        self.assertTrue(message.startswith(f"{self.scene}:{one}:5: particles[one]: "), message)
+        self.assertIn("none.h5", message)
+        with open(self.scene, "w") as file:
+            file.write(SCENE + "domain: {low_m: [-1, -0.002, -1], high_m: [1, 0.002, 1], periodic: [y]}\n")
+        message = self.refused("check", self.scene)
+        self.assertTrue(message.startswith(f"{self.scene}:{SCENE.count(chr(10)) + 1}:9: domain: the periodic length along y"), message)
+
+    def test_whole_steps_to_the_end_of_a_stage(self):
+        """100 steps of 1e-5 s are 0.001 s, though a float of 1e-5 falls short of it: no sliver of a step, and no frame twice."""
+        for precision in ("double", "mixed"):
+            done = clast("run", self.scene, "--out", self.result, "--precision", precision, "--set", "stages[fall].step_s=1e-5", "--set",
+                         "output={every_s: 0.0002}")
+            self.assertEqual(done.returncode, OK, done.stderr)
+            with h5py.File(self.result) as file:
+                self.assertEqual(list(file["particles/all/position/step"]), [0, 20, 40, 60, 80, 100], precision)
+                self.assertAlmostEqual(file["particles/all/position/time"][-1], 0.001, 12)
 
     def test_bad_device(self):
         self.assertIn("`no such`", self.refused("check", self.scene, "--device", "no such", code=DEVICE))

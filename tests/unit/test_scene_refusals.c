@@ -215,8 +215,9 @@ static void test_bad_flat_scenes(void **state)
 static void test_bad_documents(void **state)
 {
     (void)state;
-    expect_refusal("", 0, NULL, "holds no YAML");
-    expect_refusal("# nothing\n", 0, NULL, "holds no YAML");
+    expect_refusal("", 0, NULL, "dir/scene.yaml:1:1: holds no YAML");
+    expect_refusal("# nothing\n", 0, NULL, "dir/scene.yaml:1:1: holds no YAML");
+    expect_refusal("seed: 1\ntitle: caf\xe9\n", 0, NULL, "dir/scene.yaml:2:11: not a text file in UTF-8");
     expect_refusal("- a\n", 0, NULL, "dir/scene.yaml:1:1: a scene must be a mapping");
     expect_refusal("hello\n", 0, NULL, "a scene must be a mapping");
     expect_refusal("title: a\n", 0, NULL, "a scene needs the key `materials`");
@@ -256,6 +257,8 @@ static void test_bad_settings(void **state)
         {"walls.point_m=1", "`walls` is a list of 2, so it has no key `point_m`; choose an entry"},
         {"title.x=1", "`title` is `base`, so it has no key `x`"},
         {"title[0]=1", "`title` is `base`, not a list"},
+        {"wals[floor].point_m=[0,0,0]", "the scene has no list `wals` to choose an entry from"},
+        {"stages[0].change.walls[floor].motion=[]", "the scene has no list `stages[0].change.walls` to choose an entry from"},
         {"walls[floor=1", "the path lacks a `]`"},
         {"walls[]=1", "empty step"},
         {"walls[floor]x=1", "needs a `.` or `[` after `]`"},
