@@ -96,8 +96,9 @@ status read_between(reader *r, const parameter *row, int node, void *target)
         int item = document_item(r->document, node, k);
         TRY(parameter_word(r, row->key, item, &word));
         bool is_wall = find_named(s->wall, s->wall_count, sizeof(wall), offsetof(wall, name), word) >= 0;
-        walls += is_wall;
-        if (!is_wall && find_named(s->material, s->material_count, sizeof(material), offsetof(material, name), word) < 0)
+        bool is_material = find_named(s->material, s->material_count, sizeof(material), offsetof(material, name), word) >= 0;
+        walls += is_wall && !is_material; /* a name that both have is refused as such, later */
+        if (!is_wall && !is_material)
             return unknown_body(r, item, word);
         entry->between[k] = scene_copy(word);
     }

@@ -228,6 +228,10 @@ static void test_bad_documents(void **state)
     expect_refusal("materials: [{name: m, density_kg_m3: 1}]\nstages: [{until: {steps: 1}}]\n"
                    "particles: [{name: a, material: m, generator: lattice, counts: [1e9, 1e9, 1], spacing_m: 1, radius_m: 1}]\n",
                    0, NULL, "the scene has 1e+18 particles");
+    expect_refusal("materials: [{name: m, density_kg_m3: 1}]\nwalls: [{name: m, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]\n"
+                   "interactions: [{between: [m, m], friction_static: 1}]\nstages: [{until: {steps: 1}}]\n"
+                   "particles: [{name: a, material: m, generator: list, items: [{position_m: [0, 0, 1], radius_m: 1}]}]\n",
+                   0, NULL, "dir/scene.yaml:2:16: the name `m` is taken by a material at line 1");
     char *deep = malloc(200001);
     assert_non_null(deep);
     memset(deep, '[', 200000);
