@@ -4,7 +4,7 @@ import subprocess
 import unittest
 
 TOOL = os.path.join(os.environ["CLAST_SOURCE_DIR"], "tools", "compare_precision")
-SCENES = ["two_spheres", "oblique_impact", "slide_to_roll", "bond_pair", "burner_bed", "thermal_base", "friction_heating", "vibrated_layer"]
+SCENES = ["oblique_impact", "bond_pair", "burner_bed", "thermal_base", "friction_heating", "vibrated_layer"]
 
 
 class MixedPrecision(unittest.TestCase):
