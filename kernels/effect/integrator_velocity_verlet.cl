@@ -8,12 +8,7 @@
 #define INTEGRATOR_VELOCITY(i, v) PRECISE_GRAIN3(half_velocity, i)
 #define INTEGRATOR_KEEP_VELOCITY(i, v) SET_GRAIN3(half_velocity, i, v)
 /* Springs as sums of energy see them: stretched up to the positions as they are. */
-#define INTEGRATOR_CATCH_UP(c, s, out)                                \
-    do {                                                              \
-        tangential_force(c, &(s)->slip, &(s)->tangential, out);       \
-        rolling_moment(c, &(s)->rolling, out);                        \
-        bond_shear(c, &(s)->bond, out);                               \
-    } while (0)
+#define INTEGRATOR_CATCH_UP(c, s, out) contact_springs(c, s, out)
 #define INTEGRATOR_AHEAD(kept, ahead) (ahead)
 /* The extrapolation makes a damper count twice towards the limit of the step (docs/theory.md). */
 #define INTEGRATOR_DAMPING_LAG R(2.0)

@@ -181,6 +181,14 @@ INLINE void cohesion_unless_bonded(const contact *c, contact_state *s, response 
     out->damper = bonded ? damper : out->damper;
 }
 
+/* What the springs along the surface are after the step, with nothing for the ledger. */
+INLINE void contact_springs(const contact *c, contact_state *s, response *out)
+{
+    tangential_force(c, &s->slip, &s->tangential, out);
+    rolling_moment(c, &s->rolling, out);
+    bond_shear(c, &s->bond, out);
+}
+
 /* The slots in their order. */
 INLINE void contact_laws(contact *c, contact_state *s, response *out)
 {
