@@ -95,7 +95,7 @@ double draw(const char *key, double low, double high, double fallback, uint64_t 
     return fmin(high, fmax(low, value));
 }
 
-/* Properties of which a pair gives only one. */
+/* Properties of which a pair gives only one, and some that it may do without: whether they are there changes the program. */
 static bool left_out(const char *key, uint64_t *state, const char *bond, const char *damping)
 {
     static const char *const bonds[] = {"bond_stiffness", "bond_equilibrium_overlap_m", "bond_normalised_stiffness_n",
@@ -127,7 +127,7 @@ void put_properties(char *text, size_t size, const property *const *list, bool w
         const property *p = *list;
         size_t used = strlen(text);
         bool table = tabled(p, warm, modulus, shape);
-        if (left_out(p->key, state, bond, damping) && !table)
+        if (left_out(p->key, shape, bond, damping) && !table)
             continue;
         double value = draw(p->key, p->low, p->high, p->fallback, state);
         if (table)
