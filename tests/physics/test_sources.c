@@ -281,11 +281,13 @@ static void test_frozen_edge(void **state)
 {
     (void)state;
     const double speed = 0.02, radius = 1.1037e-3, power = 2.0;
+    const char *stages = case_mixed() ? "stages: [{motion: frozen, until: {time_s: 0.5}, heat: {tolerance: 1e-7}}]\n" /* what floats tell of a step */
+                                      : "stages: [{motion: frozen, until: {time_s: 0.5}, heat: {tolerance: 1e-9}}]\n";
     text t = {0};
     put_bed(&t,
             "  - {slot: source, law: laser, name: scan, diameter_m: 2.2074e-3, direction: [0, 0, -1], attenuation_1_m: 1000, "
             "path: {time_s: [0, 0.5], position_m: [[-3e-3, 0, 0], [7e-3, 0, 0]], power_w: [2, 2]}}\n",
-            "stages: [{motion: frozen, until: {time_s: 0.5}, heat: {tolerance: 1e-9}}]\n", 1, 1);
+            stages, 1, 1);
     physics_case c = case_open(&t);
     MUST(frozen_advance(c.sim, 0.5, INT64_MAX, why));
     double *now = case_field(&c, "temperature");
