@@ -79,9 +79,11 @@ static bool box(hid_t file, const results_spec *spec)
 {
     hid_t made = group_at(file, "/particles/all/box");
     const int dimension = 3;
-    char boundary[3][8] = {{0}};
-    for (int k = 0; k < 3; k++)
-        strcpy(boundary[k], spec->box_given && spec->periodic[k] ? "periodic" : "none");
+    char boundary[3][8] = {{0}}; /* filled up with zeros; the longer word leaves no room for one */
+    for (int k = 0; k < 3; k++) {
+        const char *word = spec->box_given && spec->periodic[k] ? "periodic" : "none";
+        memcpy(boundary[k], word, strlen(word));
+    }
     hsize_t extent = 3;
     hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate_simple(1, &extent, NULL);
     H5Tset_size(type, sizeof boundary[0]);
