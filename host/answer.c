@@ -254,3 +254,14 @@ status answer_check_study(const scene *scene, failure *why)
         TRY(check_closed_form(scene, &study->closed_form[k], why));
     return STATUS_OK;
 }
+
+status answer_check_scene(const scene *s, failure *why)
+{
+    scene *studied = NULL;
+    if (s->study.set_count == 0)
+        return answer_check_study(s, why);
+    TRY(scene_read(s->path, s->study.set_count, s->study.set, &studied, why));
+    status result = answer_check_study(studied, why);
+    scene_free(studied);
+    return result;
+}

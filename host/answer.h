@@ -28,7 +28,9 @@ status answer_read(const char *path, const answer *a, const int64_t *first, answ
 void answer_merge(answer_series *series, double within_s);
 void answer_free(answer_series *series);
 
-/* Answers and closed forms of a scene's `study`. Asked by studies alone: a run does not need them, and a --set may take away what they name. */
+/* Answers and closed forms of a scene's `study`. A run does not need them, and a --set may take away what they name. */
 status answer_check_study(const scene *scene, failure *why);
+/* The same of a scene as it stands in its file, under the settings that its `study` lays over it. */
+status answer_check_scene(const scene *scene, failure *why);
 
 #endif

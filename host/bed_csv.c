@@ -95,6 +95,12 @@ static char *next_cell(char **rest)
     return trim(cell);
 }
 
+/* Counted from 1, in bytes, as editors and the messages on scenes count. */
+static int place_in_line(const table *t, const char *cell)
+{
+    return (int)(cell - t->line) + 1;
+}
+
 static status read_header(table *t, bool radius_given, failure *why)
 {
     char *text;
@@ -104,17 +110,17 @@ static status read_header(table *t, bool radius_given, failure *why)
                     t->path);
     while (text) {
         const char *name = next_cell(&text);
-        int k = 0;
+        int k = 0, at = place_in_line(t, name);
         while (k < COLUMN_COUNT && strcmp(name, column_names[k]) != 0)
             k++;
         if (k == COLUMN_COUNT)
             return fail(why, STATUS_BAD_INPUT,
                         "%s:%" PRId64
-                        ": column `%.60s` is unknown; known are x_m, y_m, z_m, radius_m, vx_m_s, vy_m_s, vz_m_s, wx_rad_s, wy_rad_s, "
+                        ":%d: column `%.60s` is unknown; known are x_m, y_m, z_m, radius_m, vx_m_s, vy_m_s, vz_m_s, wx_rad_s, wy_rad_s, "
                         "wz_rad_s, temperature_k and scalar, separated by commas",
-                        t->path, t->line_number, name);
+                        t->path, t->line_number, at, name);
         if (t->present[k])
-            return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": column `%s` appears twice", t->path, t->line_number, name);
+            return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ":%d: column `%s` appears twice", t->path, t->line_number, at, name);
         t->present[k] = true;
         t->columns[t->column_count++] = (column)k;
     }
@@ -128,17 +134,18 @@ static status read_header(table *t, bool radius_given, failure *why)
 static status read_cell(const table *t, column k, const char *cell, double *value, failure *why)
 {
     char *end;
+    int at = place_in_line(t, cell);
     *value = strtod(cell, &end);
     if (end == cell || *end != '\0')
-        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": %s is `%.60s`, which is not a number", t->path, t->line_number, column_names[k],
-                    cell);
+        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ":%d: %s is `%.60s`, which is not a number", t->path, t->line_number, at,
+                    column_names[k], cell);
     if (!isfinite(*value))
-        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": %s is `%.60s`; it must be finite", t->path, t->line_number, column_names[k],
-                    cell);
+        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ":%d: %s is `%.60s`; it must be finite", t->path, t->line_number, at,
+                    column_names[k], cell);
     if (k == RADIUS && !(*value > 0.0))
-        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": radius_m is `%.60s`; it must be above 0", t->path, t->line_number, cell);
+        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ":%d: radius_m is `%.60s`; it must be above 0", t->path, t->line_number, at, cell);
     if (k == TEMPERATURE && !(*value > 0.0))
-        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ": temperature_k is `%.60s`; it must be above 0", t->path, t->line_number, cell);
+        return fail(why, STATUS_BAD_INPUT, "%s:%" PRId64 ":%d: temperature_k is `%.60s`; it must be above 0", t->path, t->line_number, at, cell);
     return STATUS_OK;
 }
 

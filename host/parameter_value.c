@@ -203,7 +203,11 @@ static status read_flags(reader *r, const parameter *row, int node, bool *out)
     int length = 0, index = 0;
     TRY(parameter_list_length(r, row, node, &length));
     for (int k = 0; k < length; k++) {
-        TRY(read_choice(r, row, document_item(r->document, node, k), &index));
+        int item = document_item(r->document, node, k);
+        TRY(read_choice(r, row, item, &index));
+        if (out[index])
+            return document_fail(r->document, item, r->why, "`%s` lists `%s` twice; keep one", row->key,
+                                 document_scalar(r->document, item));
         out[index] = true;
     }
     return STATUS_OK;

@@ -1,5 +1,6 @@
 #include "plan.h"
 
+#include "answer.h"
 #include "clock.h"
 #include "frozen.h"
 #include "plan_data.h"
@@ -212,7 +213,9 @@ status plan_command(const char *scene_path, int set_count, char *const *sets, co
     bed bed = {0};
     device device = {0};
     TRY(scene_read(scene_path, set_count, sets, &scene, why));
-    status result = bed_generate(scene, &bed, why);
+    status result = set_count == 0 ? answer_check_scene(scene, why) : STATUS_OK; /* settings may take away what the study names */
+    if (result == STATUS_OK)
+        result = bed_generate(scene, &bed, why);
     if (result == STATUS_OK)
         result = device_open(device_choice, scene->precision != PRECISION_MIXED, &device, why);
     if (result == STATUS_OK)

@@ -195,6 +195,13 @@ class SceneFile(unittest.TestCase):
             message = self.refused(*arguments)
             self.assertTrue(message.startswith(f"{self.scene}:{line}:1: "), message)
 
+    def test_answers_of_a_study(self):
+        """`check` looks at the names that only studies ask for, under the settings of the study."""
+        with open(self.scene, "a") as file:
+            file.write('study: {answers: [kinetic_energy, kinetic_enrgy], set: ["title=studied"]}\n')
+        self.assertIn(f"{self.scene}: study.answers[1]: ", self.refused("check", self.scene))
+        self.assertIn("did you mean `kinetic_energy`?", self.refused("check", self.scene))
+
     def test_what_turns_out_later_has_its_place_too(self):
         """A results file that is not there, and a period too short for the grains, which their radii and the skin say."""
         one = next(k for k, line in enumerate(SCENE.split("\n"), 1) if "name: one" in line)

@@ -84,6 +84,7 @@ static const bad_scene bad_scenes[] = {
     {"until: {time_s: 1}", "heat: {method: rk4}, until: {time_s: 1}", "`method` must be one of"},
     {"high_m: [1, 1, 1]}", "high_m: [1, 1, 1], periodic: [w]}", "`periodic` must be one of `x`, `y`, `z`; it is `w`"},
     {"high_m: [1, 1, 1]}", "high_m: [1, 1, 1], periodic: x}", "`periodic` must be a list"},
+    {"high_m: [1, 1, 1]}", "high_m: [1, 1, 1], periodic: [x, y, x]}", "`periodic` lists `x` twice; keep one"},
     /* effects */
     {"slot: normal", "slot: induction", "there is no slot called `induction`; this version has `radius`"},
     {"slot: normal", "slot: periodic", "there is no slot called `periodic`"},
