@@ -24,6 +24,7 @@ class Haff(unittest.TestCase):
                 "particles[gas].velocity_m_s": f"[{speed}, 0, 0]", "interactions[default].normal_stiffness_n_m": 8000}
         out = os.path.join(folder, f"gas-{speed}.h5")
         words = [CLAST, "run", SCENE, "--out", out, "--quiet"] + [word for key, value in sets.items() for word in ("--set", f"{key}={value}")]
+        words += [word for setting in os.environ.get("CLAST_TEST_SET", "").split() for word in ("--set", setting)]
         done = subprocess.run(words, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         with h5py.File(out) as file:

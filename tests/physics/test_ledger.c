@@ -15,6 +15,15 @@ static void put_material(text *t, const char *interactions)
     put(t, "interactions:\n  - {between: default, %s}\n", interactions);
 }
 
+/* Grains of a list above a floor, still without any. */
+static void put_floor(text *t, const char *options, const char *interactions)
+{
+    put(t, "effects:\n  - {slot: normal, law: hertz}\n%s", options);
+    put_material(t, interactions);
+    put(t, "walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]\n"
+           "particles:\n  - name: p\n    material: m\n    generator: list\n    items:\n");
+}
+
 static void read_ledger(physics_case *c, double *out)
 {
     MUST(ledger_read(c->sim, out, why));
@@ -83,10 +92,7 @@ enum { ANGLES = 12, SPINS = 3, IMPACTS = ANGLES * SPINS };
 static double impact_error(const char *options, const char *interactions, double steps, double share)
 {
     text t = {0};
-    put(&t, "effects:\n  - {slot: normal, law: hertz}\n%s", options);
-    put_material(&t, interactions);
-    put(&t, "walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]\n"
-            "particles:\n  - name: p\n    material: m\n    generator: list\n    items:\n");
+    put_floor(&t, options, interactions);
     for (int k = 0; k < IMPACTS; k++) {
         double vt = tan((k % ANGLES + 0.5) / ANGLES * 0.5 * PI), spin = (k / ANGLES - 1.0) * hypot(1.0, vt) / radius;
         put_grain(&t, radius, (double[]){0.02 * k, 0, radius}, (double[]){vt, 0, -1.0}, (double[]){0, spin, 0.3 * spin});
@@ -140,10 +146,8 @@ static void test_impacts(void **state)
 static double midway_error(const char *options, const char *interactions, int stages, double steps)
 {
     text t = {0};
-    put(&t, "gravity_m_s2: [0, 0, -9.81]\neffects:\n  - {slot: normal, law: hertz}\n%s", options);
-    put_material(&t, interactions);
-    put(&t, "walls: [{name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 0, 1]}]\n"
-            "particles:\n  - name: p\n    material: m\n    generator: list\n    items:\n");
+    put(&t, "gravity_m_s2: [0, 0, -9.81]\n");
+    put_floor(&t, options, interactions);
     for (int k = 0; k < 4; k++)
         put_grain(&t, radius, (double[]){0.02 * k, 0, radius}, (double[]){0.1 * k, 0, -1.0}, (double[]){0, 10.0 * k, 3.0 * k});
     physics_case c = case_open(&t);

@@ -90,7 +90,8 @@ def run(folder, scene, *more):
     path, out = os.path.join(folder, "case.yaml"), os.path.join(folder, "case.h5")
     with open(path, "w") as file:
         file.write(scene)
-    done = subprocess.run([CLAST, "run", path, "--out", out, *more], capture_output=True, text=True)
+    words = [word for setting in os.environ.get("CLAST_TEST_SET", "").split() for word in ("--set", setting)]
+    done = subprocess.run([CLAST, "run", path, "--out", out, *words, *more], capture_output=True, text=True)
     return out, done
 
 
