@@ -1,5 +1,6 @@
 #include "device.h"
 
+#include "program.h"
 #include "tuning.h"
 
 #include <ctype.h>
@@ -327,6 +328,7 @@ static status open_info(const device_info *info, device *out, failure *why)
         *out = (device){0};
         return fail(why, STATUS_DEVICE, "the device %s cannot be opened: clCreateCommandQueue (%s)", info->name, device_error_name(code));
     }
+    out->programs = program_shelf_open();
     return STATUS_OK;
 }
 
@@ -345,6 +347,7 @@ status device_open(const char *choice, bool needs_fp64, device *out, failure *wh
 
 void device_close(device *d)
 {
+    program_shelf_close(d->programs);
     if (d->queue)
         clReleaseCommandQueue(d->queue);
     if (d->context)

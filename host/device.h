@@ -33,6 +33,7 @@ typedef struct device {
     cl_context context;
     cl_command_queue queue; /* in order */
     tuning tuning;
+    struct program_shelf *programs; /* those built last, for the next run of the same laws (program.h) */
 } device;
 
 /* Every device of every platform, in the order in which the loader lists them. No platform or no device: STATUS_DEVICE with what to

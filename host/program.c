@@ -164,7 +164,65 @@ static status report_build(const device *device, cl_program program, const char 
     return STATUS_DEVICE;
 }
 
-status program_build(const device *device, const char *text, cl_program *out, failure *why)
+/* ---- built before ---- */
+
+#define SHELF_PLACES 16
+
+struct program_shelf {
+    struct shelved {
+        char *text;
+        cl_program program;
+    } place[SHELF_PLACES];
+    int next; /* place to be filled */
+};
+
+program_shelf *program_shelf_open(void)
+{
+    return calloc(1, sizeof(program_shelf));
+}
+
+static void clear(struct shelved *place)
+{
+    if (place->program)
+        clReleaseProgram(place->program);
+    free(place->text);
+    *place = (struct shelved){NULL, NULL};
+}
+
+void program_shelf_close(program_shelf *shelf)
+{
+    for (int p = 0; shelf && p < SHELF_PLACES; p++)
+        clear(&shelf->place[p]);
+    free(shelf);
+}
+
+static bool take_from_shelf(const program_shelf *shelf, const char *text, cl_program *out)
+{
+    for (int p = 0; shelf && p < SHELF_PLACES; p++)
+        if (shelf->place[p].program && strcmp(shelf->place[p].text, text) == 0 && clRetainProgram(shelf->place[p].program) == CL_SUCCESS) {
+            *out = shelf->place[p].program;
+            return true;
+        }
+    return false;
+}
+
+static void put_on_shelf(program_shelf *shelf, const char *text, cl_program program)
+{
+    char *copy = shelf ? strdup(text) : NULL;
+    if (!copy)
+        return;
+    if (clRetainProgram(program) != CL_SUCCESS) {
+        free(copy);
+        return;
+    }
+    clear(&shelf->place[shelf->next]);
+    shelf->place[shelf->next] = (struct shelved){copy, program};
+    shelf->next = (shelf->next + 1) % SHELF_PLACES;
+}
+
+/* ---- building ---- */
+
+static status build(const device *device, const char *text, cl_program *out, failure *why)
 {
     uint64_t key = hash_text(14695981039346656037u, text);
     key = hash_text(hash_text(key, build_options), device->info.name);
@@ -189,5 +247,14 @@ status program_build(const device *device, const char *text, cl_program *out, fa
     if (cached)
         store_binary(program, path);
     *out = program;
+    return STATUS_OK;
+}
+
+status program_build(const device *device, const char *text, cl_program *out, failure *why)
+{
+    if (take_from_shelf(device->programs, text, out))
+        return STATUS_OK;
+    TRY(build(device, text, out, why));
+    put_on_shelf(device->programs, text, *out);
     return STATUS_OK;
 }

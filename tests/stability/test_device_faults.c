@@ -123,8 +123,14 @@ cl_program clCreateProgramWithSource(cl_context context, cl_uint strings, const 
         known[known_count++].program = NEXT(clCreateProgramWithSource)(context, strings, text, lengths, error);
     }
     *error = CL_SUCCESS;
-    clRetainProgram(known[k].program);
+    NEXT(clRetainProgram)(known[k].program);
     return known[k].program;
+}
+
+cl_int clRetainProgram(cl_program program)
+{
+    count(&calls.programs, 1);
+    return NEXT(clRetainProgram)(program);
 }
 
 cl_int clBuildProgram(cl_program program, cl_uint devices, const cl_device_id *device, const char *options,
