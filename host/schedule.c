@@ -4,7 +4,8 @@
 
 #include <math.h>
 
-/* Two times are the same within this share of a step. */
+/* Two times are the same within this share of a step, or of an interval of output: what the roundings of steps leave. In mixed precision the last step
+ * of a stage is the float at or above what is left. */
 #define SAME 1e-6
 
 void schedule_init(schedule *s, const scene *scene)
@@ -29,12 +30,14 @@ static double stage_end_time(const schedule *s, const simulation *sim)
 
 double schedule_next_time(const schedule *s, const simulation *sim)
 {
-    double next = INFINITY;
-    const double times[] = {s->next_frame * s->scene->output.every_s, s->next_observation * observation_interval(s),
-                            stage_end_time(s, sim)};
-    for (int k = 0; k < 3; k++)
-        if (!isnan(times[k]))
-            next = fmin(next, times[k]);
+    double end = stage_end_time(s, sim), next = isnan(end) ? INFINITY : end;
+    const double every[] = {s->scene->output.every_s, observation_interval(s)};
+    const int64_t number[] = {s->next_frame, s->next_observation};
+    for (int k = 0; k < 2; k++) {
+        double due = (double)number[k] * every[k];
+        if (!isnan(due) && !(fabs(due - end) <= SAME * every[k])) /* what is due at the end of the stage is written there */
+            next = fmin(next, due);
+    }
     return next;
 }
 
@@ -50,7 +53,7 @@ void schedule_adapt(schedule *s, simulation *sim, double recommended_s)
 {
     s->recommended_s = isfinite(recommended_s) ? recommended_s : unbound_step(s, sim);
     double left = schedule_next_time(s, sim) - sim->time, dt = s->recommended_s;
-    if (isfinite(left) && left > 0.0)
+    if (isfinite(left) && left > SAME * dt)
         dt = left / fmax(1.0, ceil(left / dt - SAME));
     simulation_set_step(sim, dt);
 }
@@ -114,11 +117,11 @@ int64_t schedule_steps(schedule *s, simulation *sim)
     return steps < 1 ? 1 : least(steps, 100000);
 }
 
-/* True once the present time is the nearest to, or past, the given multiple. Frozen stages end their steps on what is due. */
-static bool reached(const simulation *sim, double time)
+/* True once the present time is the nearest to, or past, a multiple of the interval. Frozen stages end their steps on what is due. */
+static bool reached(const simulation *sim, int64_t number, double interval)
 {
-    double early = sim->scene->stage[sim->stage].frozen ? 0.0 : 0.5 * sim->dt * (1.0 + SAME);
-    return !isnan(time) && sim->time >= time - early;
+    double early = sim->scene->stage[sim->stage].frozen ? SAME * interval : 0.5 * sim->dt * (1.0 + SAME);
+    return !isnan(interval) && sim->time >= (double)number * interval - early;
 }
 
 bool schedule_stage_over(const schedule *s, const simulation *sim)
@@ -134,15 +137,15 @@ bool schedule_stage_over(const schedule *s, const simulation *sim)
 due schedule_due(schedule *s, const simulation *sim)
 {
     due now = {false, false, false, false};
-    while (reached(sim, s->next_frame * s->scene->output.every_s)) {
+    while (reached(sim, s->next_frame, s->scene->output.every_s)) {
         now.frame = true;
         s->next_frame++;
     }
-    while (reached(sim, s->next_observation * observation_interval(s))) {
+    while (reached(sim, s->next_observation, observation_interval(s))) {
         now.observation = true;
         s->next_observation++;
     }
-    while (reached(sim, s->next_checkpoint * s->scene->output.checkpoint_every_s)) {
+    while (reached(sim, s->next_checkpoint, s->scene->output.checkpoint_every_s)) {
         now.checkpoint = true;
         s->next_checkpoint++;
     }
