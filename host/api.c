@@ -108,7 +108,7 @@ static status open_bed(clast_bed *b, const char *path, char *const *sets, int se
 {
     TRY(scene_read(path, set_count, sets, &b->scene, why));
     TRY(bed_generate(b->scene, &b->bed, why));
-    TRY(device_open(device_choice, b->scene->precision != PRECISION_MIXED, &b->device, why));
+    TRY(simulation_open_device(b->scene, device_choice, &b->device, why));
     TRY(simulation_create(b->scene, &b->bed, &b->device, NULL, &b->sim, why));
     return begin(b, 0, why);
 }

@@ -21,9 +21,9 @@ typedef struct piece {
 struct commit_file {
     char *path;
     int descriptor;
-    int error;       /* errno of the first write that failed; all later ones are dropped */
-    bool to_disk;    /* the next flush ends with fsync */
-    bool discard;    /* closing: what libhdf5 still writes is not wanted */
+    int error;    /* errno of the first write that failed; all later ones are dropped */
+    bool to_disk; /* the next flush ends with fsync */
+    bool discard; /* closing: what libhdf5 still writes is not wanted */
     hid_t driver, file;
     off_t committed; /* size of the file at the last flush: bytes below belong to it */
     int count, capacity;
@@ -411,6 +411,10 @@ static status take(commit_file *file, bool create, failure *why)
         if (errno != ENOENT || !create)
             return fail(why, STATUS_BAD_INPUT, "%s: cannot be %s: %s", file->path, verb, strerror(errno));
         const char *slash = strrchr(file->path, '/');
+        char folder[4096];
+        snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - file->path) + 1 : 1, slash ? file->path : ".");
+        if (access(folder, F_OK) == 0)
+            return fail(why, STATUS_BAD_INPUT, "%s: cannot be created: the folder takes no files", file->path);
         return fail(why, STATUS_BAD_INPUT, "%s: cannot be created: there is no folder %.*s", file->path,
                     slash ? (int)(slash - file->path) : 1, slash ? file->path : ".");
     }
@@ -422,8 +426,8 @@ static status take(commit_file *file, bool create, failure *why)
     if (fcntl(file->descriptor, F_OFD_SETLK, &lock) != 0 && (errno == EAGAIN || errno == EACCES))
         return fail(why, STATUS_BAD_INPUT, "%s: another run is writing this file", file->path);
     if (about.st_size > 0 && !hdf5_signature(file->descriptor) && !(create && never_finished(file->descriptor)))
-        return fail(why, STATUS_BAD_INPUT, create ? "%s: exists and is not an HDF5 file: not overwritten; give another name" :
-                                                    "%s: not an HDF5 file", file->path);
+        return fail(why, STATUS_BAD_INPUT,
+                    create ? "%s: exists and is not an HDF5 file: not overwritten; give another name" : "%s: not an HDF5 file", file->path);
     if (create && ftruncate(file->descriptor, 0) != 0)
         return fail(why, STATUS_BAD_INPUT, "%s: cannot be emptied: %s", file->path, strerror(errno));
     file->committed = create ? 0 : about.st_size;

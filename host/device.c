@@ -308,8 +308,9 @@ status device_choose(const device_info *list, int count, const char *choice, boo
     if (found < 0)
         return fail(why, STATUS_DEVICE, "no device answers to `%.200s`; there is %s", choice, names);
     if (needs_fp64 && !list[found].fp64)
-        return fail(why, STATUS_DEVICE, "the device %s has no fp64, which a scene in double precision needs; there is %s", list[found].name,
-                    names);
+        return fail(why, STATUS_DEVICE,
+                    "the device %s has no fp64, which double precision needs; `precision: mixed` does without; there is %s",
+                    list[found].name, names);
     *index = found;
     return STATUS_OK;
 }
@@ -330,6 +331,17 @@ static status open_info(const device_info *info, device *out, failure *why)
     }
     out->programs = program_shelf_open();
     return STATUS_OK;
+}
+
+void device_bytes(uint64_t bytes, char *text, size_t size)
+{
+    double b = (double)bytes;
+    if (b < 1e6)
+        snprintf(text, size, "%.1f kB", 1e-3 * b);
+    else if (b < 1e9)
+        snprintf(text, size, "%.1f MB", 1e-6 * b);
+    else
+        snprintf(text, size, "%.2f GB", 1e-9 * b);
 }
 
 status device_open(const char *choice, bool needs_fp64, device *out, failure *why)

@@ -46,6 +46,8 @@ status device_open(const char *choice, bool needs_fp64, device *out, failure *wh
 void device_close(device *d);
 /* Name of an OpenCL error code ("CL_OUT_OF_RESOURCES"). */
 const char *device_error_name(cl_int code);
+/* "44.5 kB", "1.20 GB" */
+void device_bytes(uint64_t bytes, char *text, size_t size);
 /* "pthread-... (pocl 3.1, driver ...)" in one line, for results and messages. */
 void device_describe(const device_info *info, char *text, size_t size);
 

@@ -90,6 +90,8 @@ status parameter_number(reader *r, const parameter *row, int node, double *out)
     if (text[0] == '\0' || end == text)
         return wrong_number(r, row, node, "");
     /* strtod also takes hexadecimal, inf and nan. */
+    if (*end == '\0' && !isfinite(value) && strpbrk(text, "nN"))
+        return wrong_number(r, row, node, ", which is no finite number");
     if (*end != '\0' || strspn(text, "0123456789+-.eE") != strlen(text))
         return wrong_number(r, row, node, "; write the number alone, in SI, without a unit");
     if (!isfinite(value))

@@ -217,7 +217,7 @@ status plan_command(const char *scene_path, int set_count, char *const *sets, co
     if (result == STATUS_OK)
         result = bed_generate(scene, &bed, why);
     if (result == STATUS_OK)
-        result = device_open(device_choice, scene->precision != PRECISION_MIXED, &device, why);
+        result = simulation_open_device(scene, device_choice, &device, why);
     if (result == STATUS_OK)
         result = plan_scene(scene, &bed, &device, kernels, json, probe, why);
     device_close(&device);

@@ -21,17 +21,6 @@ static const char *stage_label(const plan *p, int s, char *text, size_t size)
     return text;
 }
 
-static void print_bytes(char *text, size_t size, uint64_t bytes)
-{
-    double b = (double)bytes;
-    if (b < 1e6)
-        snprintf(text, size, "%.1f kB", 1e-3 * b);
-    else if (b < 1e9)
-        snprintf(text, size, "%.1f MB", 1e-6 * b);
-    else
-        snprintf(text, size, "%.2f GB", 1e-9 * b);
-}
-
 static void print_seconds(char *text, size_t size, double seconds)
 {
     if (isfinite(seconds))
@@ -239,14 +228,14 @@ static void print_steps(const plan *p)
 static void print_row(const plan *p, const char *name, const char *note, uint64_t bytes)
 {
     char total[32];
-    print_bytes(total, sizeof total, bytes);
+    device_bytes(bytes, total, sizeof total);
     printf("  %-22s%-11s%13.1f%12s\n", name, note, plan_bytes_per_particle(p, bytes), total);
 }
 
 static void print_memory(const plan *p)
 {
     char usable[32];
-    print_bytes(usable, sizeof usable, p->device->usable_bytes);
+    device_bytes(p->device->usable_bytes, usable, sizeof usable);
     printf("\n%-35s%13s%12s\n", "Memory", "bytes a grain", "total");
     for (int f = 0; f < p->field_count; f++)
         print_row(p, p->field[f].name, p->field[f].per_record ? "per contact" : "per grain", p->field[f].bytes);

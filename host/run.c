@@ -284,7 +284,7 @@ static status prepare(run *r, const run_options *options, const char *results_pa
     r->checkpoint_path = run_checkpoint_path(results_path);
     if (!r->results_path || !r->checkpoint_path)
         return fail(why, STATUS_ERROR, "out of memory");
-    TRY(device_open(options->device, r->scene->precision != PRECISION_MIXED, &r->device, why));
+    TRY(simulation_open_device(r->scene, options->device, &r->device, why));
     return simulation_create(r->scene, &r->bed, &r->device, options->kernels, &r->sim, why);
 }
 

@@ -497,7 +497,8 @@ static const parameter scene_rows[] = {
      .doc = "everything random follows from it"},
     {.key = "gravity_m_s2", .type = PARAMETER_VECTOR, .unit = "m/s^2", .fallback = "[0, 0, 0]", AT(scene, gravity_m_s2), .doc = "gravity"},
     {.key = "precision", .type = PARAMETER_CHOICE, .choices = "auto|double|mixed", .fallback = "auto", AT(scene, precision),
-     .doc = "arithmetic: `mixed` computes in float, needs no fp64, and keeps what float would lose in pairs of floats; `auto` is `double`"},
+     .doc = "arithmetic: `mixed` computes in float, needs no fp64, and keeps what float would lose in pairs of floats; `auto` is `double` on a device "
+            "that has fp64, else `mixed`"},
     {.key = "integrator", .type = PARAMETER_CHOICE, .choices = "semi_implicit_euler|velocity_verlet",
      .fallback = "semi_implicit_euler", AT(scene, integrator), .doc = "how time advances"},
     {.key = "domain", .type = PARAMETER_SECTION, .section = &domain_section, AT(scene, domain), .given = offsetof(scene, domain.given),

@@ -4,9 +4,9 @@
 #include "bond_figures.h"
 #include "frozen.h"
 #include "laws/fields.h"
-#include "precision.h"
 #include "laws/laws.h"
 #include "ledger.h"
+#include "precision.h"
 #include "property.h"
 
 #include <math.h>
@@ -18,7 +18,8 @@ static void measure_bed(simulation *sim, const bed *bed)
     const scene *scene = sim->scene;
     sim->radius_min = sim->table.radius_min = INFINITY;
     for (int64_t i = 0; i < bed->count; i++) {
-        double rest = bed->radius[i], r = rest * expansion_factor(scene, bed->material[i], bed->temperature[i]), density = scene_material(scene, bed->material[i], &property_density);
+        double rest = bed->radius[i], r = rest * expansion_factor(scene, bed->material[i], bed->temperature[i]),
+               density = scene_material(scene, bed->material[i], &property_density);
         sim->radius_min = fmin(sim->radius_min, r);
         sim->radius_max = fmax(sim->radius_max, r);
         sim->table.radius_min = fmin(sim->table.radius_min, rest);
@@ -52,8 +53,9 @@ static status check_periods(const simulation *sim, failure *why)
     for (int c = 0; d->given && c < 3; c++)
         if (d->periodic[c] && d->high_m[c] - d->low_m[c] < least)
             return fail(why, STATUS_BAD_INPUT,
-                        "%s:%d:%d: domain: the periodic length along %c is %g m; it must be at least %g m (two largest diameters and the skin, twice)",
-                        sim->scene->path, d->at.line, d->at.column, "xyz"[c], d->high_m[c] - d->low_m[c], least);
+                        "%s:%d:%d: domain: the periodic length along %c is %g m; it must be at least %g m (two largest diameters and the "
+                        "skin, twice)",
+                        sim->scene->path, d->at.line, d->at.column, "xyz"[c], d -> high_m[c] - d -> low_m[c], least);
     return STATUS_OK;
 }
 
@@ -90,9 +92,10 @@ static status upload_expanded(simulation *sim, const bed *bed, double *radius, f
     for (int64_t i = 0; i < bed->count; i++) {
         double factor = expansion_factor(sim->scene, bed->material[i], bed->temperature[i]);
         if (!(factor > 0.0))
-            return fail(why, STATUS_BAD_INPUT, "%s: a particle of the material `%s` at %g K would have %g of its radius; expansion_1_k and "
-                        "reference_temperature_k must leave it positive", sim->scene->path, sim->scene->material[bed->material[i]].name,
-                        bed->temperature[i], factor);
+            return fail(why, STATUS_BAD_INPUT,
+                        "%s: a particle of the material `%s` at %g K would have %g of its radius; expansion_1_k and "
+                        "reference_temperature_k must leave it positive",
+                        sim->scene->path, sim->scene->material[bed->material[i]].name, bed->temperature[i], factor);
         radius[i] *= factor;
     }
     return STATUS_OK;
@@ -146,7 +149,8 @@ static status upload_bed(simulation *sim, const bed *bed, failure *why)
     double upright[4] = {1.0, 0.0, 0.0, 0.0};
     if (sim->mixed)
         precision_split(upright, 4);
-    TRY_CL(clEnqueueFillBuffer(sim->device->queue, orientation->mem, upright, sizeof upright, 0, sizeof upright * (size_t)sim->stride, 0, NULL, NULL),
+    TRY_CL(clEnqueueFillBuffer(sim->device->queue, orientation->mem, upright, sizeof upright, 0, sizeof upright * (size_t)sim->stride, 0,
+                               NULL, NULL),
            "orientation");
     return STATUS_OK;
 }
@@ -193,7 +197,8 @@ static status create_buffers(simulation *sim, failure *why)
         TRY(store_buffer(sim, &sim->velocity_now, field_bytes(sim, &field_velocity), "synchronised velocities", why));
         TRY(store_buffer(sim, &sim->spin_now, store_find(sim, "spin") ? field_bytes(sim, &field_spin) : 0, "synchronised spins", why));
         if (sim->all.law[SLOT_LEDGER])
-            TRY(store_buffer(sim, &sim->ledger_now, LEDGER_FIELDS * field_bytes(sim, &field_dissipated), "the ledger's last half step", why));
+            TRY(store_buffer(sim, &sim->ledger_now, LEDGER_FIELDS * field_bytes(sim, &field_dissipated), "the ledger's last half step",
+                             why));
     }
     TRY(store_buffer(sim, &sim->where, 4 * (uint64_t)sim->stride, "indices of ids", why));
     TRY(store_buffer(sim, &sim->control, sizeof(clast_control), "control words", why));
@@ -203,6 +208,17 @@ static status create_buffers(simulation *sim, failure *why)
     TRY(store_buffer(sim, &sim->constants, store_item(sim, FIELD_REAL) * (uint64_t)constants, "contact constants", why));
     TRY(heat_create(sim, why));
     return table_create(sim, why);
+}
+
+status simulation_open_device(scene *scene, const char *choice, device *out, failure *why)
+{
+    status result = device_open(choice, scene->precision != PRECISION_MIXED, out, why);
+    if (result != STATUS_DEVICE || scene->precision != PRECISION_AUTO)
+        return result;
+    result = device_open(choice, false, out, why);
+    if (result == STATUS_OK && !out->info.fp64)
+        scene->precision = PRECISION_MIXED;
+    return result;
 }
 
 status simulation_create(const scene *scene, const bed *bed, device *device, const char *kernels_directory, simulation **out, failure *why)
@@ -258,8 +274,8 @@ void simulation_free(simulation *sim)
     step_loop_free(sim);
     for (int f = 0; f < sim->field_count; f++)
         store_release(sim, &sim->field[f].mem, 0);
-    cl_mem *const rest[] = {&sim->where, &sim->partial, &sim->control, &sim->faces, &sim->movers, &sim->constants, &sim->built_position, &sim->scratch4,
-                            &sim->velocity_now, &sim->spin_now, &sim->ledger_now};
+    cl_mem *const rest[] = {&sim->where,          &sim->partial,  &sim->control,      &sim->faces,    &sim->movers,    &sim->constants,
+                            &sim->built_position, &sim->scratch4, &sim->velocity_now, &sim->spin_now, &sim->ledger_now};
     for (size_t m = 0; m < sizeof rest / sizeof *rest; m++)
         store_release(sim, rest[m], 0);
     free(sim->outbox.copy);

@@ -212,6 +212,8 @@ typedef struct simulation {
     uint64_t bytes;          /* on the device */
 } simulation;
 
+/* Opens the device for a scene. A scene that leaves its precision open is set to mixed where the device has no fp64. */
+status simulation_open_device(scene *scene, const char *choice, device *out, failure *why);
 status simulation_create(const scene *scene, const bed *bed, device *device, const char *kernels_directory, simulation **out, failure *why);
 void simulation_free(simulation *sim);
 /* The step to take from here on. */

@@ -22,19 +22,26 @@ static uint64_t buffer_bytes(uint64_t bytes)
 status store_buffer(simulation *sim, cl_mem *mem, uint64_t bytes, const char *what, failure *why)
 {
     const device_info *info = &sim->device->info;
+    char needed[32], held[32], most[32];
     bytes = buffer_bytes(bytes);
-    if (sim->bytes + bytes > info->usable_bytes)
-        return fail(why, STATUS_DEVICE, "%s does not hold this scene: %s needs %.3f GB on top of %.3f GB, %.3f GB can be used; use fewer grains or a larger device",
-                    info->name, what, 1e-9 * (double)bytes, 1e-9 * (double)sim->bytes, 1e-9 * (double)info->usable_bytes);
-    if (!info->cpu && bytes > info->buffer_bytes)
-        return fail(why, STATUS_DEVICE, "%s does not allow buffers of more than %.3f GB; %s needs %.3f GB", info->name,
-                    1e-9 * (double)info->buffer_bytes, what, 1e-9 * (double)bytes);
+    device_bytes(bytes, needed, sizeof needed);
+    device_bytes(sim->bytes, held, sizeof held);
+    if (sim->bytes + bytes > info->usable_bytes) {
+        device_bytes(info->usable_bytes, most, sizeof most);
+        return fail(why, STATUS_DEVICE,
+                    "%s does not hold this scene: %s needs %s on top of %s, %s can be used; use fewer grains or a larger device",
+                    info->name, what, needed, held, most);
+    }
+    if (!info->cpu && bytes > info->buffer_bytes) {
+        device_bytes(info->buffer_bytes, most, sizeof most);
+        return fail(why, STATUS_DEVICE, "%s does not allow buffers of more than %s; %s needs %s", info->name, most, what, needed);
+    }
     cl_int code;
     *mem = clCreateBuffer(sim->device->context, CL_MEM_READ_WRITE, bytes, NULL, &code);
     if (code != CL_SUCCESS) {
         *mem = NULL;
-        return fail(why, STATUS_DEVICE, "%s cannot allocate %.3f GB for %s (%s), with %.3f GB allocated before", info->name, 1e-9 * (double)bytes,
-                    what, device_error_name(code), 1e-9 * (double)sim->bytes);
+        return fail(why, STATUS_DEVICE, "%s cannot allocate %s for %s (%s), with %s allocated before", info->name, needed, what,
+                    device_error_name(code), held);
     }
     sim->bytes += bytes;
     return STATUS_OK;
@@ -124,7 +131,8 @@ status store_write(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes,
         data = memcpy(box->copy + box->used, data, bytes);
         box->used += (bytes + 63) / 64 * 64;
     }
-    TRY_CL(clEnqueueWriteBuffer(sim->device->queue, mem, waits ? CL_TRUE : CL_FALSE, offset, bytes, data, 0, NULL, NULL), "writing to the device");
+    TRY_CL(clEnqueueWriteBuffer(sim->device->queue, mem, waits ? CL_TRUE : CL_FALSE, offset, bytes, data, 0, NULL, NULL),
+           "writing to the device");
     box->used = waits ? 0 : box->used;
     return STATUS_OK;
 }

@@ -81,14 +81,14 @@ static status probe_stages(simulation *sim, study_probe *probe, failure *why)
     return STATUS_OK;
 }
 
-static status probe_scene(const study *s, const scene *scene, study_probe *probe, failure *why)
+static status probe_scene(const study *s, scene *scene, study_probe *probe, failure *why)
 {
     bed bed = {0};
     device device = {0};
     simulation *sim = NULL;
     status result = bed_generate(scene, &bed, why);
     if (result == STATUS_OK)
-        result = device_open(s->options->run.device, scene->precision != PRECISION_MIXED, &device, why);
+        result = simulation_open_device(scene, s->options->run.device, &device, why);
     if (result == STATUS_OK)
         result = simulation_create(scene, &bed, &device, s->options->run.kernels, &sim, why);
     if (result == STATUS_OK)

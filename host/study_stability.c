@@ -457,7 +457,7 @@ static status prepare(study *s, int *last, failure *why)
     s->result = calloc((size_t)s->scene->stage_count, sizeof *s->result);
     if (!s->result)
         return fail(why, STATUS_ERROR, "out of memory");
-    return device_open(o->run.device, s->scene->precision != PRECISION_MIXED, &s->device, why);
+    return simulation_open_device(s->scene, o->run.device, &s->device, why);
 }
 
 status study_stability(const stability_options *options, failure *why)

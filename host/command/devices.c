@@ -75,9 +75,8 @@ static void print_table(const device_info *list, int count, int used)
             printf(" %-*s%s", c == COLUMNS - 1 ? 0 : width[c], cell[c], c == COLUMNS - 1 ? "\n" : " ");
     }
     if (used >= 0)
-        printf("* is used unless --device says otherwise.\n");
-    else
-        printf("None of them has fp64, which this version needs.\n");
+        printf("* is used unless --device says otherwise%s.\n",
+               list[used].fp64 ? "" : "; it has no fp64, so scenes run in mixed precision");
 }
 
 static status print_json(const device_info *list, int count, int used, failure *why)
@@ -106,7 +105,8 @@ status command_devices(int argc, char **argv, failure *why)
     int count, used;
     TRY(device_list(&list, &count, why));
     failure unused;
-    if (device_choose(list, count, NULL, true, &used, &unused) != STATUS_OK)
+    if (device_choose(list, count, NULL, true, &used, &unused) != STATUS_OK &&
+        device_choose(list, count, NULL, false, &used, &unused) != STATUS_OK)
         used = -1;
     status result = STATUS_OK;
     if (json)

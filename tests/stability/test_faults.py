@@ -120,6 +120,29 @@ class Faults(unittest.TestCase):
 
             self.for_each(one, self.some(calls, 8 if call == "clCreateBuffer" else 3))
 
+    def test_lesser_device(self):
+        """Without fp64 a scene that leaves its precision open runs in mixed precision, and one that does not is told so; what does not fit is refused
+        with the numbers, before anything is written."""
+        def on(memory, buffer, *more):
+            folder, command = self.fresh("less")
+            environment = dict(os.environ, LD_PRELOAD=FAULTS, CLAST_FAULT_DEVICE=f"{memory},{buffer}")
+            done = subprocess.run(command + list(more), capture_output=True, text=True, env=environment, timeout=600, cwd=folder)
+            return os.path.join(folder, "r.h5"), done
+
+        short = ["--set", "stages[go].until={steps: 20}", "--set", "stages[on].until={steps: 20}"]
+        result, done = on(10**9, 10**9, *short)
+        self.assertEqual(done.returncode, OK, done.stderr)
+        with h5py.File(result) as file:
+            self.assertIn("mixed", file["clast/plan"][()].decode())
+        for memory, buffer, more, pieces in ((10**9, 10**9, ["--precision", "double"], ["has no fp64", "precision: mixed"]),
+                                             (20000, 10**9, [], ["does not hold this scene", "on top of", "20.0 kB can be used", "fewer grains"]),
+                                             (10**9, 1000, [], ["does not allow buffers of more than 1.0 kB", "needs "])):
+            result, done = on(memory, buffer, *more)
+            self.assertEqual(done.returncode, DEVICE, done.stderr)
+            for piece in pieces:
+                self.assertIn(piece, done.stderr)
+            self.assertFalse(os.path.exists(result))
+
     def is_beginning(self, result):
         try:
             times, bits = frames(result)

@@ -4,7 +4,10 @@
  * CLAST_FAULT_AT      which of these calls, from 1 on; 0: none, they are only counted
  *                     (paths that begin at the working directory count as below it)
  * CLAST_FAULT_ACTION  fail: this call alone; full: this write and all later ones, as on a full disk; kill: SIGKILL in its place
- * CLAST_FAULT_COUNT   file that the number of calls is written to at the end */
+ * CLAST_FAULT_COUNT   file that the number of calls is written to at the end
+ *
+ * Or makes a device out of the CPU that is less than it:
+ * CLAST_FAULT_DEVICE  its memory and its largest buffer in bytes, `1000000,20000`: a GPU without fp64 */
 #define _GNU_SOURCE
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
@@ -50,6 +53,25 @@ __attribute__((destructor)) static void tell(void)
 }
 
 #define NEXT(name) ((__typeof__(&name))(uintptr_t)dlsym(RTLD_NEXT, #name))
+
+/* ---- a lesser device ---- */
+
+cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void *value, size_t *needed)
+{
+    const char *less = getenv("CLAST_FAULT_DEVICE"), *comma = less ? strchr(less, ',') : NULL;
+    cl_int code = NEXT(clGetDeviceInfo)(device, what, size, value, needed);
+    if (!comma || !value || code != CL_SUCCESS)
+        return code;
+    if (what == CL_DEVICE_TYPE)
+        *(cl_device_type *)value = CL_DEVICE_TYPE_GPU;
+    if (what == CL_DEVICE_DOUBLE_FP_CONFIG)
+        *(cl_device_fp_config *)value = 0;
+    if (what == CL_DEVICE_GLOBAL_MEM_SIZE)
+        *(cl_ulong *)value = (cl_ulong)atoll(less);
+    if (what == CL_DEVICE_MAX_MEM_ALLOC_SIZE)
+        *(cl_ulong *)value = (cl_ulong)atoll(comma + 1);
+    return code;
+}
 
 /* ---- files ---- */
 
