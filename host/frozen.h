@@ -11,6 +11,8 @@ void frozen_restart(simulation *sim);
 void frozen_free(simulation *sim);
 /* Largest step of Euler's method under which no temperature leaves the interval of those around it, s; infinite where nothing draws any. */
 status frozen_limit(simulation *sim, double *out, failure *why);
+/* Refuses a stage that only a small rate of temperature ends, where a cluster of grains that nothing cools is heated for good. */
+status frozen_refuse_endless(simulation *sim, failure *why);
 /* The interval of temperatures that there are, and are prescribed, in the present stage, K. */
 status frozen_range(simulation *sim, double *out, failure *why);
 const char *frozen_method_name(heat_method method);

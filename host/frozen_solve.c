@@ -115,20 +115,20 @@ static status find_residual(simulation *sim, cl_mem rises, cl_mem known, double 
     return frozen_run_grains(sim, "heat_frozen_residual", 13, why);
 }
 
-/* Temperatures stay in the interval of all around them; where something heats them, positive. */
-static status correct(simulation *sim, cl_mem rises, failure *why)
+/* Temperatures stay in the interval of all around them; where something heats them, positive; those to be `levelled` have no level yet. */
+static status correct(simulation *sim, cl_mem rises, bool levelled, failure *why)
 {
     frozen_heat *f = &sim->frozen;
     clast_launch launch = launch_values(sim);
     cl_kernel kernel = launch_kernel(sim, "heat_frozen_correct");
     bool heated = frozen_is_heated(sim);
-    TRY(launch_set(kernel, "heat_frozen_correct", why, sim->mixed ? "Lmmff" : "Lmmdd", &launch, f->x, rises, heated ? 0.1 * f->low : f->low,
-                   heated ? 1e6 * f->high : f->high));
+    TRY(launch_set(kernel, "heat_frozen_correct", why, sim->mixed ? "Lmmff" : "Lmmdd", &launch, f->x, rises,
+                   levelled ? -1e6 * f->high : heated ? 0.1 * f->low : f->low, heated ? 1e6 * f->high : f->high));
     return frozen_run_grains(sim, "heat_frozen_correct", 5, why);
 }
 
 /* Rises at which what flows in is what sigma stores of them beyond the known ones. *converged: the last correction was small enough. */
-static status newton(simulation *sim, cl_mem rises, cl_mem known, double sigma, int row, bool *converged, failure *why)
+static status newton(simulation *sim, cl_mem rises, cl_mem known, double sigma, int row, bool levelled, bool *converged, failure *why)
 {
     frozen_heat *f = &sim->frozen;
     bool linear = !sim->live.law[SLOT_RADIATION] && (sigma == 0.0 || !scene_has_material_table(sim->scene, &property_specific_heat));
@@ -138,7 +138,7 @@ static status newton(simulation *sim, cl_mem rises, cl_mem known, double sigma, 
         frozen_findings found;
         TRY(find_residual(sim, rises, known, sigma, row, sigma == 0.0 && n < CHORDS, why));
         TRY(solve(sim, reduction(sim), why));
-        TRY(correct(sim, rises, why));
+        TRY(correct(sim, rises, levelled, why));
         TRY(frozen_fold(sim, rises, f->x, f->zero, &found, why));
         if (!(found.error < 1e29))
             return STATUS_OK;
@@ -162,10 +162,14 @@ typedef struct clusters {
     int64_t *root, links;
     int32_t *link, *fixed;
     uint32_t *slot_offset;
-    double *conductance, *sink, *capacity, *source, *temperature, *sums; /* sums: of each root: sink, capacity, its product with temperature, source */
+    double *conductance, *sink, *capacity, *source, *temperature;
+    double *sums;    /* of each root: sink, capacity, its product with temperature, source, sizes of the sources */
     double *end;     /* temperature that each root's cluster comes to without a sink */
     int32_t *material;
+    bool levelled;   /* some cluster has no sink, and what heats it in one place cools it in another */
 } clusters;
+
+#define CLUSTER_SUMS 5
 
 static void clusters_free(clusters *c)
 {
@@ -203,7 +207,7 @@ static status read_clusters(simulation *sim, clusters *c, failure *why)
     double **const grains[] = {&c->sink, &c->capacity, &c->source, &c->temperature};
     for (int k = 0; k < 4; k++)
         *grains[k] = malloc(sizeof(double) * n);
-    c->sums = calloc(4 * n, sizeof *c->sums);
+    c->sums = calloc(CLUSTER_SUMS * n, sizeof *c->sums);
     c->end = malloc(sizeof *c->end * n);
     c->material = calloc(n, sizeof *c->material);
     if (!c->end || !c->material || !c->root || !c->fixed || !c->link || !c->conductance || !c->sink || !c->capacity || !c->source || !c->temperature || !c->sums)
@@ -229,11 +233,12 @@ static void join_clusters(const simulation *sim, clusters *c)
                 c->root[a > b ? a : b] = a > b ? b : a;
             }
     for (int64_t i = 0; i < sim->count; i++) {
-        double *sum = c->sums + 4 * root_of(c, i);
+        double *sum = c->sums + CLUSTER_SUMS * root_of(c, i);
         sum[0] += c->sink[i];
         sum[1] += c->capacity[i];
         sum[2] += c->capacity[i] * c->temperature[i];
         sum[3] += c->source[i];
+        sum[4] += fabs(c->source[i]);
     }
 }
 
@@ -259,7 +264,7 @@ static status find_ends(const simulation *sim, clusters *c, failure *why)
     if (!excess)
         return fail(why, STATUS_ERROR, "out of memory");
     for (int64_t i = 0; i < sim->count; i++) {
-        c->end[i] = c->sums[4 * i + 1] > 0.0 ? c->sums[4 * i + 2] / c->sums[4 * i + 1] : 0.0;
+        c->end[i] = c->sums[CLUSTER_SUMS * i + 1] > 0.0 ? c->sums[CLUSTER_SUMS * i + 2] / c->sums[CLUSTER_SUMS * i + 1] : 0.0;
         low[i] = INFINITY;
         high[i] = 0.0;
     }
@@ -280,18 +285,29 @@ static status find_ends(const simulation *sim, clusters *c, failure *why)
     return STATUS_OK;
 }
 
-/* Rises to the end of clusters that have no sink, which are then fixed; one that is heated has no steady state. */
+/* What a cluster without a sink gains, W; 0 where its sources balance but for rounding. */
+static double cluster_gain(const simulation *sim, const double *sum)
+{
+    double rounding = (sim->mixed ? 1e-5 : 1e-10) * sum[4];
+    return sum[0] > 0.0 || fabs(sum[3]) <= rounding ? 0.0 : sum[3];
+}
+
+/* Rises to the end of clusters that have no sink, which are then fixed; one that is heated has no steady state. Where sources balance, flows settle
+ * and the level is that of the heat there is: one grain is fixed for now. */
 static status sort_out(simulation *sim, clusters *c, cl_mem rises, failure *why)
 {
     double *rise = calloc((size_t)sim->stride, sizeof *rise);
     status result = rise ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
     for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++) {
-        const double *sum = c->sums + 4 * root_of(c, i);
+        int64_t root = root_of(c, i);
+        const double *sum = c->sums + CLUSTER_SUMS * root;
+        bool balanced = sum[4] > 0.0;
         if (sum[0] > 0.0)
             continue;
-        c->fixed[i] = 1;
-        rise[i] = c->end[root_of(c, i)] - c->temperature[i];
-        if (sum[3] != 0.0)
+        c->levelled = c->levelled || balanced;
+        c->fixed[i] = !balanced || i == root;
+        rise[i] = balanced ? 0.0 : c->end[root] - c->temperature[i];
+        if (cluster_gain(sim, sum) != 0.0)
             result = fail(why, STATUS_BAD_INPUT,
                           "%s: stage %s: there is no steady state: a cluster of particles gains %.4g W and touches no wall with a temperature, nor does "
                           "anything else take heat from it; give it a sink, or heat it for a time by `method: stabilised`",
@@ -305,22 +321,120 @@ static status sort_out(simulation *sim, clusters *c, cl_mem rises, failure *why)
     return result;
 }
 
-static status settle_clusters(simulation *sim, cl_mem rises, failure *why)
+static status settle_clusters(simulation *sim, clusters *c, cl_mem rises, failure *why)
 {
-    clusters c = {0};
-    status result = read_clusters(sim, &c, why);
-    if (result == STATUS_OK) {
-        join_clusters(sim, &c);
-        result = find_ends(sim, &c, why);
+    TRY(read_clusters(sim, c, why));
+    join_clusters(sim, c);
+    TRY(find_ends(sim, c, why));
+    return sort_out(sim, c, rises, why);
+}
+
+/* What each root's cluster would hold more than before, J, with the rises and a shift of its own. */
+static void find_gain(const simulation *sim, clusters *c, const double *rise, const double *shift, double *gain)
+{
+    memset(gain, 0, sizeof *gain * (size_t)sim->count);
+    for (int64_t i = 0; i < sim->count; i++) {
+        int64_t root = root_of(c, i);
+        double from = c->temperature[i], mass = c->capacity[i] / specific_heat_at(sim->scene, c->material[i], from);
+        gain[root] += mass * specific_heat_between(sim->scene, c->material[i], from, from + rise[i] + shift[root]);
     }
-    if (result == STATUS_OK) {
-        result = sort_out(sim, &c, rises, why);
+}
+
+/* The shift with which a cluster holds what it held: at the largest of its rises turned around it holds less, at the smallest more, and its heat
+ * content grows with every temperature. */
+static void find_shifts(const simulation *sim, clusters *c, const double *rise, double *shift)
+{
+    double *gain = shift + sim->count, *low = gain + sim->count, *high = low + sim->count;
+    for (int64_t i = 0; i < sim->count; i++)
+        low[i] = high[i] = -rise[i];
+    for (int64_t i = 0; i < sim->count; i++) {
+        int64_t root = root_of(c, i);
+        low[root] = fmin(low[root], -rise[i]);
+        high[root] = fmax(high[root], -rise[i]);
+    }
+    for (int k = 0; k < HALVINGS; k++) {
+        for (int64_t i = 0; i < sim->count; i++)
+            shift[i] = 0.5 * (low[i] + high[i]);
+        find_gain(sim, c, rise, shift, gain);
+        for (int64_t i = 0; i < sim->count; i++)
+            *(gain[i] > 0.0 ? &high[i] : &low[i]) = shift[i];
+    }
+}
+
+static status level(simulation *sim, clusters *c, double *rise, double *shift, failure *why)
+{
+    find_shifts(sim, c, rise, shift);
+    for (int64_t i = 0; i < sim->count; i++) {
+        int64_t root = root_of(c, i);
+        const double *sum = c->sums + CLUSTER_SUMS * root;
+        if (sum[0] > 0.0 || !(sum[4] > 0.0))
+            continue;
+        rise[i] += shift[root];
+        if (!(c->temperature[i] + rise[i] > 0.0))
+            return fail(why, STATUS_BAD_INPUT,
+                        "%s: stage %s: there is no steady state: the heat that flows through a cluster of particles without a sink would take one of them "
+                        "to %.4g K; let less heat flow, or give the cluster a wall with a temperature",
+                        sim->scene->path, frozen_stage(sim)->name, c->temperature[i] + rise[i]);
+    }
+    return STATUS_OK;
+}
+
+static status level_clusters(simulation *sim, clusters *c, cl_mem rises, failure *why)
+{
+    if (!c->levelled)
+        return STATUS_OK;
+    double *work = malloc(5 * ((size_t)sim->count + 1) * sizeof *work), *rise = work + 4 * sim->count;
+    status result = work ? store_get(sim, rises, FIELD_REAL, 0, sim->count, rise, why) : fail(why, STATUS_ERROR, "out of memory");
+    if (result == STATUS_OK)
+        result = level(sim, c, rise, work, why);
+    if (result == STATUS_OK)
+        result = store_put(sim, rises, FIELD_REAL, 0, sim->count, rise, why);
+    free(work);
+    return result;
+}
+
+status frozen_refuse_endless(simulation *sim, failure *why)
+{
+    const scene_stage *stage = frozen_stage(sim);
+    clusters c = {0};
+    bool ends = !isnan(stage->until_time_s) || stage->until_steps >= 0, changes = sim->heat.vary || frozen_follows(sim);
+    if (isnan(stage->until_steady_k_s) || ends || changes || stage->heat_method == HEAT_STEADY)
+        return STATUS_OK;
+    TRY(fit_arrays(sim, why));
+    status result = read_clusters(sim, &c, why);
+    if (result == STATUS_OK)
+        join_clusters(sim, &c);
+    for (int64_t i = 0; i < sim->count && result == STATUS_OK; i++) {
+        const double *sum = c.sums + CLUSTER_SUMS * i;
+        double rate = sum[1] > 0.0 ? fabs(cluster_gain(sim, sum)) / sum[1] : 0.0;
+        if (rate >= stage->until_steady_k_s)
+            result = fail(why, STATUS_BAD_INPUT,
+                          "%s: stage %s: `until: {steady_k_s: %g}` is never met: a cluster of particles gains %.4g W and touches no wall with a temperature, "
+                          "nor does anything else take heat from it, so that it changes by %.4g K/s for good; give it a sink, or end the stage by `time_s`",
+                          sim->scene->path, stage->name, stage->until_steady_k_s, sum[3], rate);
     }
     clusters_free(&c);
+    frozen_solve_free(sim);
     return result;
 }
 
 /* ---- the steady state ---- */
+
+/* Rises to the steady state with the conductances as they stand. */
+static status find_steady(simulation *sim, cl_mem rises, bool *converged, failure *why)
+{
+    clusters c = {0};
+    TRY(store_fill(sim, rises, sim->frozen.grain_bytes, why));
+    status result = settle_clusters(sim, &c, rises, why);
+    if (result == STATUS_OK)
+        result = hold(sim, rises, 0, why);
+    if (result == STATUS_OK)
+        result = newton(sim, rises, sim->frozen.zero, 0.0, 0, c.levelled, converged, why);
+    if (result == STATUS_OK)
+        result = level_clusters(sim, &c, rises, why);
+    clusters_free(&c);
+    return result;
+}
 
 /* The steady state for what is prescribed at the end; without `time_s` at this moment, and no time passes. In mixed precision temperatures are
  * rebased and solved for again: floats hold the last corrections, not the whole rise. */
@@ -337,10 +451,7 @@ status frozen_steady_step(simulation *sim, double until, failure *why)
         frozen_findings moved;
         TRY(fit_arrays(sim, why));
         cl_mem rises = f->rises[0];
-        TRY(store_fill(sim, rises, f->grain_bytes, why));
-        TRY(settle_clusters(sim, rises, why));
-        TRY(hold(sim, rises, 0, why));
-        TRY(newton(sim, rises, f->zero, 0.0, 0, &converged, why));
+        TRY(find_steady(sim, rises, &converged, why));
         if (sim->live.law[SLOT_HEAT_TALLY])
             TRY(store_fill(sim, f->kept, 6 * f->grain_bytes, why));
         TRY(frozen_fold(sim, rises, rises, f->zero, &moved, why));
@@ -405,7 +516,7 @@ static status run_stages(simulation *sim, double step, bool *converged, failure 
     TRY(weigh_flows(sim, f->zero, 0, 0.0, true, why));
     TRY(store_fill(sim, first, f->grain_bytes, why));
     TRY(hold(sim, first, 1, why));
-    TRY(newton(sim, first, f->zero, sigma, 1, converged, why));
+    TRY(newton(sim, first, f->zero, sigma, 1, false, converged, why));
     if (!*converged)
         return STATUS_OK;
     TRY(weigh_flows(sim, first, 1, (1.0 - GAMMA) * step, false, why));
@@ -413,7 +524,7 @@ static status run_stages(simulation *sim, double step, bool *converged, failure 
     TRY(frozen_run_grains(sim, "heat_frozen_scale", 4, why));
     TRY(store_copy(sim, first, second, 0, 0, f->grain_bytes, why));
     TRY(hold(sim, second, 2, why));
-    TRY(newton(sim, second, f->rises[0], sigma, 2, converged, why));
+    TRY(newton(sim, second, f->rises[0], sigma, 2, false, converged, why));
     return *converged ? weigh_flows(sim, second, 2, GAMMA * step, false, why) : STATUS_OK;
 }
 

@@ -288,18 +288,44 @@ status heat_upload_bed(simulation *sim, const bed *bed, failure *why)
 
 /* ---- what is read back ---- */
 
+/* Velocities stand half a step behind, and so does the heat of what is dissipated: what comes with the half step is in the records after a look at
+ * velocities. */
+static status look_ahead(simulation *sim, bool *ahead, failure *why)
+{
+    cl_mem velocity, spin;
+    *ahead = sim->live.law[SLOT_DISSIPATION_HEAT] && !sim->live.law[SLOT_HEAT_STEPS] && live_keeps_half_steps(&sim->live) && sim->lag > 0.0;
+    return *ahead ? observe_velocities(sim, &velocity, &spin, why) : STATUS_OK;
+}
+
+status heat_temperatures(simulation *sim, cl_mem *out, failure *why)
+{
+    bool ahead;
+    clast_launch launch = launch_values(sim);
+    *out = store_find(sim, "temperature")->mem;
+    TRY(look_ahead(sim, &ahead, why));
+    if (!ahead)
+        return STATUS_OK;
+    TRY(observe_partial(sim, sim->stride, why));
+    TRY(launch_set(launch_kernel(sim, "heat_ahead"), "heat_ahead", why, "Lm", &launch, sim->partial));
+    TRY(launch_bind(sim, "heat_ahead", 2, why));
+    *out = sim->partial;
+    return launch_run(sim, launch_kernel(sim, "heat_ahead"), "heat_ahead", sim->stride, sim->block, why);
+}
+
 status heat_observe(simulation *sim, heat_sums *out, failure *why)
 {
+    bool ahead;
     int64_t chunks = (sim->id_count + CHUNK - 1) / CHUNK;
     clast_launch launch = launch_values(sim);
     cl_kernel kernel = launch_kernel(sim, "heat_sums");
     double sum[SUMS] = {[3] = -INFINITY};
     *out = (heat_sums){.lowest = NAN, .mean = NAN, .highest = NAN};
     TRY(observe_where(sim, why));
+    TRY(look_ahead(sim, &ahead, why));
     TRY(simulation_pose_now(sim, why));
     TRY(observe_partial(sim, chunks * SUMS, why));
-    TRY(launch_set(kernel, "heat_sums", why, "Lmmi", &launch, sim->where, sim->partial, (cl_int)sim->id_count));
-    TRY(launch_bind(sim, "heat_sums", 4, why));
+    TRY(launch_set(kernel, "heat_sums", why, "Lmmii", &launch, sim->where, sim->partial, (cl_int)sim->id_count, (cl_int)ahead));
+    TRY(launch_bind(sim, "heat_sums", 5, why));
     TRY(launch_run(sim, kernel, "heat_sums", chunks, 1, why));
     double *partial = malloc(sizeof *partial * (size_t)(chunks * SUMS + 1));
     if (!partial)

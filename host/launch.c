@@ -53,6 +53,7 @@ static const stage_list stage_lists[] = {
     {"heat_frozen_store", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_flush", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_sums", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"heat_ahead", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_surfaces", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
 };
 
@@ -183,6 +184,8 @@ static bool has_kernel(const simulation *sim, const char *name)
         return step_loop_wanted(sim);
     if (strcmp(name, "particle_synchronise") == 0 || strcmp(name, "pair_catch_up") == 0)
         return live_keeps_half_steps(&sim->live);
+    if (strcmp(name, "heat_ahead") == 0)
+        return live_keeps_half_steps(&sim->live) && sim->live.law[SLOT_DISSIPATION_HEAT];
     if (strcmp(name, "heat_flush") == 0)
         return sim->live.law[SLOT_HEAT_STEPS] != NULL;
     if (strcmp(name, "heat_areas") == 0)
@@ -235,7 +238,7 @@ status launch_open(simulation *sim, failure *why)
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
                                         "pair_catch_up", "particle_synchronise", "step_loop", "servo_place", "servo_stage", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
-                                        "heat_conductances", "heat_limit", "stiffness_rate", "heat_sums", "heat_surfaces", "heat_areas", "heat_flush",
+                                        "heat_conductances", "heat_limit", "stiffness_rate", "heat_sums", "heat_ahead", "heat_surfaces", "heat_areas", "heat_flush",
                                         "heat_frozen_given", "heat_frozen_links", "heat_frozen_stage", "heat_frozen_error",
                                         "heat_frozen_findings", "heat_frozen_accept", "heat_frozen_probe", "heat_frozen_spectrum", "heat_frozen_residual",
                                         "heat_frozen_correct", "heat_frozen_hold", "heat_frozen_sinks", "heat_frozen_store",

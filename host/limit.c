@@ -195,15 +195,26 @@ static void note_drag(const simulation *sim, step_limit *out)
         note(out, 1.0 / (1.0 / moving + 0.5 * rate), "background drag");
 }
 
+/* All grains are held where they are and no wall moves: no contact can push anything, and none comes. Heat alone bounds the step. */
+static bool nothing_can_move(const simulation *sim)
+{
+    bool held = sim->mover_count > 0 && !sim->walls_move && !sim->groups_move;
+    for (int g = 0; held && g < sim->mover_count; g++)
+        held = sim->group_held[g];
+    return held;
+}
+
 status limit_find(simulation *sim, step_limit *out, failure *why)
 {
     *out = (step_limit){.limit_s = INFINITY, .recommended_s = INFINITY, .live_s = INFINITY, .expected_s = INFINITY};
     snprintf(out->binds, sizeof out->binds, "nothing");
+    bool moves = !nothing_can_move(sim);
     TRY(note_heat(sim, out, why));
-    note_drag(sim, out);
+    if (moves)
+        note_drag(sim, out);
     double for_heat = SHARE_OF_HEAT * out->limit_s;
     out->recommended_s = for_heat;
-    if (!sim->live.law[SLOT_NORMAL] || sim->count == 0)
+    if (!sim->live.law[SLOT_NORMAL] || sim->count == 0 || !moves)
         return STATUS_OK;
     double normal, turning, speed, wall_speed, weight = expected_weight(sim);
     TRY(live_limit(sim, &normal, &turning, why));

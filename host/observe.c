@@ -465,6 +465,8 @@ status observe_field(simulation *sim, const char *name, double **out, failure *w
         TRY(observe_velocities(sim, &velocity, &spin, why));
         from.mem = name[0] == 'v' ? velocity : spin ? spin : stored->mem;
     }
+    if (strcmp(name, "temperature") == 0)
+        TRY(heat_temperatures(sim, &from.mem, why));
     int32_t *id = NULL;
     double *rows = NULL;
     *out = malloc(sizeof **out * (size_t)(sim->id_count * components + 1));

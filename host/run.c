@@ -135,6 +135,7 @@ static status begin_frozen_stage(run *r, const scene_stage *stage, failure *why)
     double limit, range;
     TRY(frozen_limit(r->sim, &limit, why));
     TRY(frozen_range(r->sim, &range, why));
+    TRY(frozen_refuse_endless(r->sim, why));
     r->rounds.range = fmax(r->rounds.range, range);
     run_tell(r, "stage %s: motion is frozen; heat by the %s method, tolerance %.3g of the temperature range; limit of Euler's method %.4g s", stage->name,
          frozen_method_name(stage->heat_method), stage->heat_tolerance, limit);

@@ -416,6 +416,8 @@ typedef struct heat_sums {
     double tally[CLAST_TALLIES];        /* J */
 } heat_sums;
 status heat_observe(simulation *sim, heat_sums *out, failure *why);
+/* Temperatures at the time of the positions, in an array of the device: what is dissipated in the half step by which velocities stand behind is in. */
+status heat_temperatures(simulation *sim, cl_mem *out, failure *why);
 status heat_limit_find(simulation *sim, heat_limit *out, failure *why);
 /* Conductances of the records where their heat stands, and of the grains' surfaces among the partial sums, W/K. */
 status heat_enqueue_coefficients(simulation *sim, failure *why);

@@ -50,11 +50,11 @@ __kernel void heat_limit(const clast_launch launch, __global exact *restrict par
 }
 
 /* Sums in the order of permanent ids: heat content, sum of temperatures, number of grains, the smallest with its sign turned and the largest temperature, and what each
- * path has brought, where that is kept. */
+ * path has brought, where that is kept. `ahead`: with what the records hold of the half step to come (particle_heat_ahead). */
 #define HEAT_SUMS (5 + CLAST_TALLIES)
 
 BODY void heat_sums_unit(int chunk, const clast_launch *launch, __global const int *restrict where, __global exact *restrict partial,
-                         const int id_count PARTICLE_DECLARE)
+                         const int id_count, const int ahead PARTICLE_DECLARE)
 {
     int first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, id_count);
     precise sum[HEAT_SUMS];
@@ -67,7 +67,8 @@ BODY void heat_sums_unit(int chunk, const clast_launch *launch, __global const i
             continue;
         grain g;
         particle_grain(launch, i, &g PARTICLE_PASS);
-        precise t = TEMPERATURE_PRECISE(i);
+        grain_heat h = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
+        precise t = ahead ? particle_heat_ahead(launch, i, &g, &h PARTICLE_PASS) : TEMPERATURE_PRECISE(i);
         sum[0] = precise_add(sum[0], temperature_content(&g, t));
         sum[1] = precise_add(sum[1], t);
         sum[2] = precise_add(sum[2], precise_from(R(1.0)));
@@ -75,15 +76,27 @@ BODY void heat_sums_unit(int chunk, const clast_launch *launch, __global const i
         sum[4] = precise_max(sum[4], t);
         for (int q = 0; q < CLAST_TALLIES; q++)
             sum[5 + q] = precise_add(sum[5 + q], HEAT_TALLY_OF(i, q));
+        sum[5 + CLAST_TALLY_DISSIPATION] = precise_add(sum[5 + CLAST_TALLY_DISSIPATION], precise_from(h.rubbed));
+        sum[5 + CLAST_TALLY_SOURCES] = precise_add(sum[5 + CLAST_TALLY_SOURCES], precise_from(h.sources));
     }
     for (int q = 0; q < HEAT_SUMS; q++)
         partial[HEAT_SUMS * chunk + q] = precise_store(sum[q]);
 }
 
 __kernel void heat_sums(const clast_launch launch, __global const int *restrict where, __global exact *restrict partial,
-                        const int id_count PARTICLE_DECLARE)
+                        const int id_count, const int ahead PARTICLE_DECLARE)
 {
-    heat_sums_unit(get_global_id(0), &launch, where, partial, id_count PARTICLE_PASS);
+    heat_sums_unit(get_global_id(0), &launch, where, partial, id_count, ahead PARTICLE_PASS);
+}
+
+/* Every grain's temperature with what the records hold of the half step to come. */
+__kernel void heat_ahead(const clast_launch launch, __global exact *restrict ahead PARTICLE_DECLARE)
+{
+    int i = get_global_id(0);
+    grain g;
+    grain_heat h = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
+    particle_grain(&launch, i, &g PARTICLE_PASS);
+    ahead[i] = precise_store(particle_heat_ahead(&launch, i, &g, &h PARTICLE_PASS));
 }
 
 /* What draws every grain's temperature towards the environment's, from a surface at most `hottest`, W/K. */

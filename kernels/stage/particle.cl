@@ -77,6 +77,17 @@ INLINE real particle_heat(const clast_launch *launch, int i, const grain *g, gra
     return RADIUS_STORE(i, g, held);
 }
 
+/* The temperature of grain i once it has what its contacts dissipate in the half step by which velocities stand behind the positions: the records
+ * hold that after a probe. `h` gets the heat, J. */
+INLINE precise particle_heat_ahead(const clast_launch *launch, int i, const grain *g, grain_heat *h PARTICLE_DECLARE)
+{
+    DISSIPATION_HEAT_GATHER(launch, i, h->rubbed);
+    if (!THERMAL_GROUP_HOLDS(launch, i))
+        return temperature_after(TEMPERATURE_PRECISE(i), temperature_rise(g, h->rubbed));
+    h->sources = -h->rubbed;
+    return TEMPERATURE_PRECISE(i);
+}
+
 /* What moves of a grain, with all its bits. */
 typedef struct moving {
     precise3 position, built_position, velocity, spin;

@@ -16,14 +16,13 @@ INLINE void particle_heat_half_step(const clast_launch *launch, int i PARTICLE_D
 {
     grain g;
     grain_heat h = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
-    DISSIPATION_HEAT_GATHER(launch, i, h.rubbed);
-    if (h.rubbed == R(0.0) || i >= launch->particle_count)
+    if (i >= launch->particle_count)
         return;
     particle_grain(launch, i, &g PARTICLE_PASS);
-    if (THERMAL_GROUP_HOLDS(launch, i))
-        h.sources = -h.rubbed;
-    else
-        TEMPERATURE_STORE(i, temperature_after(TEMPERATURE_PRECISE(i), temperature_rise(&g, h.rubbed)));
+    precise warmed = particle_heat_ahead(launch, i, &g, &h PARTICLE_PASS);
+    if (h.rubbed == R(0.0))
+        return;
+    TEMPERATURE_STORE(i, warmed);
     HEAT_TALLY_ADD(i, &h);
 }
 

@@ -347,6 +347,52 @@ static void test_clusters(void **state)
     }
 }
 
+/* What heats one grain of a cluster without a sink and cools the other: H (Ta - Tb) is the power, and the heat content stays. Grains, groups and
+ * walls are as many as in everything_open, whose program this is; most stand alone. */
+static void test_balanced_cluster(void **state)
+{
+    (void)state;
+    text t = {0};
+    const double power = 0.5, m = row_capacity(), n = sphere_mass(8000, RADIUS) * 400.0;
+    double apart = power / overlap_conductance(RADIUS, RADIUS, 3e-5, 100, 20), mean = (m * 500.0 + n * 400.0) / (m + n);
+    put_laws(&t, 0.0, 0.0, 0.0, "300");
+    put(&t, "walls:\n  - {name: hot, shape: plane, point_m: [-1, 0, 0], normal: [1, 0, 0], temperature_k: 900}\n"
+            "  - {name: heater, shape: plane, point_m: [0, 0, -1], normal: [0, 0, 1], heat_flux_w: 0.4}\n"
+            "  - {name: side, shape: plane, point_m: [0, -1, 0], normal: [0, 1, 0]}\nparticles:\n");
+    for (int k = 0; k < GRAINS; k++)
+        put(&t, "  - {name: g%d, material: %s, generator: list, temperature_k: %g, %s items: [{position_m: [%.17g, 0, 0], radius_m: %.17g}]}\n", k,
+            k == 1 ? "n" : "m", 500.0 - 100.0 * (k == 1), k == 0 ? "thermal: flux, heat_flux_w: 0.5," : k == 1 ? "thermal: flux, heat_flux_w: -0.5," : "",
+            k < 2 ? 5.97e-3 * k : 0.01 * k, RADIUS);
+    put(&t, "stages: [{motion: frozen, until: {time_s: 1}, heat: {method: steady}}]\n");
+    physics_case c = case_open(&t);
+    advance(&c, 1.0);
+    assert_true(apart > 20.0);
+    RELATIVE(temperature_of(&c, 0), mean + apart * n / (m + n), mixed(&c) ? 1e-5 : 1e-11);
+    RELATIVE(temperature_of(&c, 1), mean - apart * m / (m + n), mixed(&c) ? 1e-5 : 1e-11);
+    NEAR(temperature_of(&c, 2), 500.0, 0.0);
+    case_close(&c);
+}
+
+/* A stage that only a small rate ends, and a cluster that is heated for good: refused before it begins. */
+static void test_endless(void **state)
+{
+    (void)state;
+    const char *const ends[] = {"{steady_k_s: 1.0e-3}", "{steady_k_s: 1.0e-3, time_s: 1}", "{steady_k_s: 1.0e3}"};
+    for (int k = 0; k < 3; k++) {
+        text t = {0};
+        failure refused;
+        put_laws(&t, 0.0, 0.0, 1e6, "300");
+        put(&t, "%sstages: [{name: warm, motion: frozen, until: %s}]\n", two_clusters, ends[k]);
+        physics_case c = case_open(&t);
+        double limit;
+        MUST(frozen_limit(c.sim, &limit, why));
+        assert_int_equal(frozen_refuse_endless(c.sim, &refused), k == 0 ? STATUS_BAD_INPUT : STATUS_OK);
+        if (k == 0)
+            assert_non_null(strstr(refused.text, "stage warm: `until: {steady_k_s: 0.001}` is never met: a cluster of particles gains"));
+        case_close(&c);
+    }
+}
+
 /* Into the heat of 3000 K, from 300 K: Newton's method neither overshoots nor stalls. */
 static void test_steady_radiation(void **state)
 {
@@ -442,6 +488,7 @@ int main(void)
         cmocka_unit_test(test_radiation),     cmocka_unit_test(test_balance),  cmocka_unit_test(test_coupled), cmocka_unit_test(test_restart),
         cmocka_unit_test(test_bounds),        cmocka_unit_test(test_front),    cmocka_unit_test(test_rate),    cmocka_unit_test(test_moving_wall),
         cmocka_unit_test(test_steady_row),    cmocka_unit_test(test_steady_everything), cmocka_unit_test(test_clusters),
+        cmocka_unit_test(test_balanced_cluster), cmocka_unit_test(test_endless),
         cmocka_unit_test(test_steady_radiation), cmocka_unit_test(test_implicit), cmocka_unit_test(test_implicit_everything),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -126,6 +126,13 @@ static void test_prescribed_pair(void **state)
     for (int k = 0; k < 6; k++)
         assert_true(f[k] == 0.0);
     free(f);
+    assert_true(isfinite(case_limit(&c).limit_s)); /* they may come to move */
+    case_close(&c);
+    t = head(0.0);
+    put_group(&t, "a", "fixed", none, none);
+    put_group(&t, "b", "fixed", (double[]){1.5e-3, 0, 0}, none);
+    c = case_open(&t);
+    assert_false(isfinite(case_limit(&c).limit_s)); /* nothing can: no contact bounds the step */
     case_close(&c);
 }
 
