@@ -409,9 +409,9 @@ status frozen_refuse_endless(simulation *sim, failure *why)
         double rate = sum[1] > 0.0 ? fabs(cluster_gain(sim, sum)) / sum[1] : 0.0;
         if (rate >= stage->until_steady_k_s)
             result = fail(why, STATUS_BAD_INPUT,
-                          "%s: stage %s: `until: {steady_k_s: %g}` is never met: a cluster of particles gains %.4g W and touches no wall with a temperature, "
+                          "%s:%d:%d: stage %s: `until: {steady_k_s: %g}` is never met: a cluster of particles gains %.4g W and touches no wall with a temperature, "
                           "nor does anything else take heat from it, so that it changes by %.4g K/s for good; give it a sink, or end the stage by `time_s`",
-                          sim->scene->path, stage->name, stage->until_steady_k_s, sum[3], rate);
+                          sim->scene->path, stage->at.line, stage->at.column, stage->name, stage->until_steady_k_s, sum[3], rate);
     }
     clusters_free(&c);
     frozen_solve_free(sim);
