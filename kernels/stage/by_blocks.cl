@@ -221,6 +221,18 @@ INLINE void moving_of_rows(const real *rows, int lane, moving *m)
     m->kept_spin = INTEGRATOR_PRECISE_SPIN_OF_ROWS(rows, ROW_KEPT + 3 * EXACT_REALS, lane, m->spin);
 }
 
+/* Rows of slots stand a block apart, and only a few are read of each, so that no processor foresees them: they are asked for as the grains of
+ * two units before are advanced. */
+INLINE void slots_ask_ahead(const clast_launch *launch, int first PARTICLE_DECLARE)
+{
+    if (first >= launch->particle_count)
+        return;
+    uint end = slot_offset[first / CLAST_BLOCK + 1];
+    for (uint s = slot_offset[first / CLAST_BLOCK]; s < end; s += CLAST_BLOCK)
+        for (int lane = 0; lane < PARTICLE_LANES; lane += 16)
+            ASK_FOR(slots + s + first % CLAST_BLOCK + lane);
+}
+
 /* Grains `first` to first + PARTICLE_LANES - 1, which stand in one block. */
 INLINE void particle_block(const clast_launch *launch, __global clast_control *control, int first PARTICLE_DECLARE)
 {
@@ -228,6 +240,7 @@ INLINE void particle_block(const clast_launch *launch, __global clast_control *c
     int far = 0;
     for (int lane = 0; lane < PARTICLE_LANES; lane += 4)
         moving_fill((int4)(first + lane, first + lane + 1, first + lane + 2, first + lane + 3), rows + lane PARTICLE_PASS);
+    slots_ask_ahead(launch, first + 2 * PARTICLE_LANES PARTICLE_PASS);
     for (int lane = 0; lane < PARTICLE_LANES; lane++) {
         vec3 f, t;
         grain_heat h;
