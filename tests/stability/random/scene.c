@@ -69,9 +69,11 @@ static const char *place(const world *w, double along, double across, double up)
 
 /* ---- effects ---- */
 
-static void put_option(world *w, char *text, size_t size, const law_option *o)
+/* Where a program has them as constants, the options of a law are of the structure. */
+static void put_option(world *w, char *text, size_t size, const law *of, const law_option *o)
 {
     size_t used = strlen(text);
+    uint64_t *state = of->constants ? &w->shape : &w->state;
     if (o->choices) {
         char words[256], *rest = NULL, *word[16];
         int count = 0;
@@ -80,11 +82,11 @@ static void put_option(world *w, char *text, size_t size, const law_option *o)
             word[count++] = one;
         snprintf(text + used, size - used, ", %s: %s", o->key, word[below(&w->shape, count)]);
     } else if (strcmp(o->key, "time_s") == 0 || strcmp(o->key, "depth_m") == 0) {
-        snprintf(text + used, size - used, ", %s: %.6g", o->key, chance(&w->state, 0.5) ? 0.0 : decades(&w->state, -5.0, -3.0));
+        snprintf(text + used, size - used, ", %s: %.6g", o->key, chance(state, 0.5) ? 0.0 : decades(state, -5.0, -3.0));
     } else if (strstr(o->key, "every_steps")) {
-        snprintf(text + used, size - used, ", %s: %d", o->key, 1 + below(&w->state, 200));
+        snprintf(text + used, size - used, ", %s: %d", o->key, 1 + below(state, 200));
     } else {
-        snprintf(text + used, size - used, ", %s: %.6g", o->key, draw(o->key, o->low, o->high, o->fallback, &w->state));
+        snprintf(text + used, size - used, ", %s: %.6g", o->key, draw(o->key, o->low, o->high, o->fallback, state));
     }
 }
 
@@ -103,7 +105,7 @@ static void put_effect(world *w, slot_id slot)
         one = choice[0];
     for (const law_option *o = one->options; o < one->options + LAW_OPTIONS_MAX && o->key; o++)
         if (slot != SLOT_SOURCE || (strcmp(o->key, "diameter_m") != 0 && strcmp(o->key, "depth_max_m") != 0))
-            put_option(w, text, sizeof text, o);
+            put_option(w, text, sizeof text, one, o);
     if (slot == SLOT_SOURCE)
         snprintf(text + strlen(text), sizeof text - strlen(text),
                  ", name: beam, diameter_m: %.6g, direction: %s%s, path: {time_s: [0, 0.01], position_m: [%s, %s], power_w: [%.6g, 0]}",
