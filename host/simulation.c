@@ -210,15 +210,27 @@ static status create_buffers(simulation *sim, failure *why)
     return table_create(sim, why);
 }
 
+/* True where the choice names a device, and none that it names has fp64. */
+static bool lacks_fp64(const char *choice)
+{
+    device_info *list;
+    int count, index;
+    failure unused;
+    if (device_list(&list, &count, &unused) != STATUS_OK)
+        return false;
+    bool lacks = device_choose(list, count, choice, true, &index, &unused) != STATUS_OK &&
+                 device_choose(list, count, choice, false, &index, &unused) == STATUS_OK;
+    free(list);
+    return lacks;
+}
+
 status simulation_open_device(scene *scene, const char *choice, device *out, failure *why)
 {
     status result = device_open(choice, scene->precision != PRECISION_MIXED, out, why);
-    if (result != STATUS_DEVICE || scene->precision != PRECISION_AUTO)
+    if (result != STATUS_DEVICE || scene->precision != PRECISION_AUTO || !lacks_fp64(choice))
         return result;
-    result = device_open(choice, false, out, why);
-    if (result == STATUS_OK && !out->info.fp64)
-        scene->precision = PRECISION_MIXED;
-    return result;
+    scene->precision = PRECISION_MIXED;
+    return device_open(choice, false, out, why);
 }
 
 status simulation_create(const scene *scene, const bed *bed, device *device, const char *kernels_directory, simulation **out, failure *why)
