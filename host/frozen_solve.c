@@ -293,7 +293,7 @@ static double cluster_gain(const simulation *sim, const double *sum)
 }
 
 /* Rises to the end of clusters that have no sink, which are then fixed; one that is heated has no steady state. Where sources balance, flows settle
- * and the level is that of the heat there is: one grain is fixed for now. */
+ * and the level is that of the heat there is: one grain is fixed meanwhile. */
 static status sort_out(simulation *sim, clusters *c, cl_mem rises, failure *why)
 {
     double *rise = calloc((size_t)sim->stride, sizeof *rise);
