@@ -55,7 +55,7 @@ static status check_periods(const simulation *sim, failure *why)
             return fail(why, STATUS_BAD_INPUT,
                         "%s:%d:%d: domain: the periodic length along %c is %g m; it must be at least %g m (two largest diameters and the "
                         "skin, twice)",
-                        sim->scene->path, d->at.line, d->at.column, "xyz"[c], d -> high_m[c] - d -> low_m[c], least);
+                        sim->scene->path, d->at.line, d->at.column, "xyz"[c], d->high_m[c] - d->low_m[c], least);
     return STATUS_OK;
 }
 
