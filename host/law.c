@@ -15,7 +15,7 @@ static const struct {
     const char *name;
     bool listed;
 } slots[SLOT_COUNT] = {
-    [SLOT_PRECISION] = {"precision", false},     [SLOT_COMPOSITION] = {"composition", false}, [SLOT_PERIODIC] = {"periodic", false},     [SLOT_MOTION] = {"motion", false},
+    [SLOT_PRECISION] = {"precision", false},     [SLOT_COMPOSITION] = {"composition", false}, [SLOT_DIMENSIONS] = {"dimensions", false},    [SLOT_PERIODIC] = {"periodic", false},     [SLOT_MOTION] = {"motion", false},
     [SLOT_ROTATION] = {"rotation", false},       [SLOT_NORMAL] = {"normal", true},
     [SLOT_BONDING] = {"bonding", false},         [SLOT_BOND] = {"bond", true},              [SLOT_COHESION] = {"cohesion", true},
     [SLOT_SLIP] = {"slip", false},

@@ -9,6 +9,7 @@ typedef enum slot_id {
     SLOT_PRECISION,   /* derived: double, or float with what takes small increments kept whole */
     SLOT_TABLES,      /* derived: properties by temperature */
     SLOT_COMPOSITION, /* derived: one material or several */
+    SLOT_DIMENSIONS,  /* derived: a plane instead of space */
     SLOT_PERIODIC,    /* derived: nearest image */
     SLOT_MOTION,      /* derived: all free, or groups with prescribed motion */
     SLOT_ROTATION,    /* derived: spin, where a law or an output asks for it */

@@ -157,6 +157,8 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         out->law[SLOT_PRECISION] = &law_precision_mixed;
     if (scene->material_count > 1)
         out->law[SLOT_COMPOSITION] = &law_composition_several;
+    if (scene->dimensions == 2)
+        out->law[SLOT_DIMENSIONS] = &law_dimensions_two;
     if (scene->domain.given && (scene->domain.periodic[0] || scene->domain.periodic[1] || scene->domain.periodic[2]))
         out->law[SLOT_PERIODIC] = &law_periodic_box;
     if (any_group_moves(scene))
@@ -216,7 +218,7 @@ void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, liv
 static const char *none_file(slot_id slot)
 {
     static const char *const files[SLOT_COUNT] = {
-        [SLOT_PRECISION] = "precision/double.cl",   [SLOT_COMPOSITION] = "none/composition.cl", [SLOT_PERIODIC] = "none/periodic.cl",       [SLOT_MOTION] = "none/motion.cl",
+        [SLOT_PRECISION] = "precision/double.cl",   [SLOT_COMPOSITION] = "none/composition.cl", [SLOT_DIMENSIONS] = "none/dimensions.cl", [SLOT_PERIODIC] = "none/periodic.cl",       [SLOT_MOTION] = "none/motion.cl",
         [SLOT_ROTATION] = "none/rotation.cl",       [SLOT_NORMAL] = "none/normal.cl",           [SLOT_BONDING] = "none/bonding.cl",
         [SLOT_BOND] = "none/bond.cl",               [SLOT_COHESION] = "none/cohesion.cl",       [SLOT_SLIP] = "none/slip.cl",
         [SLOT_TANGENTIAL] = "none/tangential.cl",   [SLOT_ROLLING] = "none/rolling.cl",         [SLOT_WALLS] = "none/walls.cl",
@@ -276,7 +278,7 @@ int live_files(const live_laws *live, const char **files, int max)
 
 int live_table_files(const live_laws *live, const char **files)
 {
-    static const slot_id slots[] = {SLOT_PRECISION, SLOT_PERIODIC};
+    static const slot_id slots[] = {SLOT_PRECISION, SLOT_DIMENSIONS, SLOT_PERIODIC};
     int count = 0;
     for (size_t s = 0; s < sizeof slots / sizeof *slots; s++)
         files[count++] = live->law[slots[s]] ? live->law[slots[s]]->kernel_file : none_file(slots[s]);

@@ -288,6 +288,10 @@ static status read_records(simulation *sim, record_arrays *r, failure *why)
         TRY(read_component(sim, bonded->mem, 0, &r->bonded, why));
     if (sim->live.law[SLOT_BOND] == &law_sintering)
         TRY(read_component(sim, store_find(sim, "neck_growth")->mem, 0, &r->growth, why));
+    if (sim->live.law[SLOT_DIMENSIONS]) { /* what is always 0 is not written: what stood there before must go */
+        TRY(store_fill(sim, force, field_bytes(sim, &field_force), why));
+        TRY(torque ? store_fill(sim, torque->mem, field_bytes(sim, torque->field), why) : STATUS_OK);
+    }
     TRY(run_on_records(sim, "pair_probe", why));
     TRY(read_ints(sim, t->owner[t->now], t->record_count, &r->owner, why));
     TRY(read_ints(sim, t->other[t->now], t->record_count, &r->other, why));

@@ -42,7 +42,7 @@ static void choose_origin(simulation *sim)
     for (int c = 0; c < 3; c++)
         extent = fmax(extent, 1.25 * (sim->bed_high[c] - sim->bed_low[c] + 2.0 * sim->radius_max));
     double length = exp2(ceil(log2(extent)));
-    for (int c = 0; sim->mixed && isfinite(length) && c < 3; c++)
+    for (int c = 0; sim->mixed && isfinite(length) && c < (sim->all.law[SLOT_DIMENSIONS] ? 2 : 3); c++)
         sim->origin[c] = 0.125 * length * floor((sim->bed_low[c] - sim->radius_max) / (0.125 * length)) - length;
 }
 
@@ -196,6 +196,8 @@ static status create_buffers(simulation *sim, failure *why)
     if (live_keeps_half_steps(&sim->all)) {
         TRY(store_buffer(sim, &sim->velocity_now, field_bytes(sim, &field_velocity), "synchronised velocities", why));
         TRY(store_buffer(sim, &sim->spin_now, store_find(sim, "spin") ? field_bytes(sim, &field_spin) : 0, "synchronised spins", why));
+        TRY(store_fill(sim, sim->velocity_now, field_bytes(sim, &field_velocity), why)); /* what is 0 in two dimensions is never written */
+        TRY(store_fill(sim, sim->spin_now, store_find(sim, "spin") ? field_bytes(sim, &field_spin) : 0, why));
         if (sim->all.law[SLOT_LEDGER])
             TRY(store_buffer(sim, &sim->ledger_now, LEDGER_FIELDS * field_bytes(sim, &field_dissipated), "the ledger's last half step",
                              why));

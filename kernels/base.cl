@@ -172,6 +172,28 @@ INLINE real power_of(real x, real y)
         STORE_PRECISE((field)[3 * (size_t)(i) + 1], (v).y);  \
         STORE_PRECISE((field)[3 * (size_t)(i) + 2], (v).z);  \
     } while (0)
+/* Polar vectors (position, velocity, force) lie in the plane of a scene of two dimensions, axial ones (spin, moment) along its normal. What is always
+ * 0 there is neither read nor stored (effect/dimensions_two.cl). */
+#define POLAR3(a) v3(number((a)[0]), number((a)[1]), SPACE_NUMBER(number((a)[2])))
+#define AXIAL3(a) v3(SPACE_NUMBER(number((a)[0])), SPACE_NUMBER(number((a)[1])), number((a)[2]))
+#define PRECISE_POLAR3(a) precise3_of(precise_load((a)[0]), precise_load((a)[1]), SPACE_PRECISE(precise_load((a)[2])))
+#define PRECISE_AXIAL3(a) precise3_of(SPACE_PRECISE(precise_load((a)[0])), SPACE_PRECISE(precise_load((a)[1])), precise_load((a)[2]))
+#define GRAIN_POLAR3(field, i) POLAR3((field) + 3 * (size_t)(i))
+#define GRAIN_AXIAL3(field, i) AXIAL3((field) + 3 * (size_t)(i))
+#define PRECISE_GRAIN_POLAR3(field, i) PRECISE_POLAR3((field) + 3 * (size_t)(i))
+#define PRECISE_GRAIN_AXIAL3(field, i) PRECISE_AXIAL3((field) + 3 * (size_t)(i))
+#define SET_GRAIN_POLAR3(field, i, v)                                    \
+    do {                                                                 \
+        STORE_PRECISE((field)[3 * (size_t)(i)], (v).x);                  \
+        STORE_PRECISE((field)[3 * (size_t)(i) + 1], (v).y);              \
+        SPACE_STORE(STORE_PRECISE((field)[3 * (size_t)(i) + 2], (v).z)); \
+    } while (0)
+#define SET_GRAIN_AXIAL3(field, i, v)                                    \
+    do {                                                                 \
+        SPACE_STORE(STORE_PRECISE((field)[3 * (size_t)(i)], (v).x));     \
+        SPACE_STORE(STORE_PRECISE((field)[3 * (size_t)(i) + 1], (v).y)); \
+        STORE_PRECISE((field)[3 * (size_t)(i) + 2], (v).z);              \
+    } while (0)
 #define GRAIN_RADIUS(i) number(radius[i])
 /* Fields of records are read one record after the other, a component each: component c of a field of `stride` elements a component. */
 #define AT(field, stride, c, k) (field)[(size_t)(c) * (size_t)(stride) + (size_t)(k)]
@@ -181,6 +203,21 @@ INLINE real power_of(real x, real y)
         AT(field, stride, 0, k) = (v).x;   \
         AT(field, stride, 1, k) = (v).y;   \
         AT(field, stride, 2, k) = (v).z;   \
+    } while (0)
+
+#define LOAD_POLAR3(field, stride, k) v3(AT(field, stride, 0, k), AT(field, stride, 1, k), SPACE_NUMBER(AT(field, stride, 2, k)))
+#define LOAD_AXIAL3(field, stride, k) v3(SPACE_NUMBER(AT(field, stride, 0, k)), SPACE_NUMBER(AT(field, stride, 1, k)), AT(field, stride, 2, k))
+#define STORE_POLAR3(field, stride, k, v)            \
+    do {                                             \
+        AT(field, stride, 0, k) = (v).x;             \
+        AT(field, stride, 1, k) = (v).y;             \
+        SPACE_STORE(AT(field, stride, 2, k) = (v).z); \
+    } while (0)
+#define STORE_AXIAL3(field, stride, k, v)            \
+    do {                                             \
+        SPACE_STORE(AT(field, stride, 0, k) = (v).x); \
+        SPACE_STORE(AT(field, stride, 1, k) = (v).y); \
+        AT(field, stride, 2, k) = (v).z;             \
     } while (0)
 
 /* How a slot names its kernel arguments once and has them declared and passed: SLOT_PAIR_FIELDS(READ, WRITE) lists type and name. */

@@ -31,6 +31,14 @@ const law law_composition_several = {
     .pair_fields = {&field_material},
 };
 
+const law law_dimensions_two = {
+    .name = "two",
+    .slot = SLOT_DIMENSIONS,
+    .doc = "Motion in the plane of x and y, and spins about z: what is always 0 is not computed.",
+    .source = "",
+    .kernel_file = "effect/dimensions_two.cl",
+};
+
 const law law_periodic_box = {
     .name = "box",
     .slot = SLOT_PERIODIC,

@@ -31,15 +31,15 @@
         (s).count = bonded[k];                                           \
         (s).bonding = BONDING_LOAD(launch, k);                           \
         (s).gap = bond_gap[k];                                           \
-        (s).shear = LOAD3(bond_shear, (launch)->record_stride, k);       \
-        (s).turn = LOAD3(bond_turn, (launch)->record_stride, k);         \
+        (s).shear = LOAD_POLAR3(bond_shear, (launch)->record_stride, k);       \
+        (s).turn = LOAD_AXIAL3(bond_turn, (launch)->record_stride, k);         \
     } while (0)
 #define BOND_STORE(launch, k, s)                                         \
     do {                                                                 \
         bonded[k] = (s).count;                                           \
         bond_gap[k] = (s).gap;                                           \
-        STORE3(bond_shear, (launch)->record_stride, k, (s).shear);       \
-        STORE3(bond_turn, (launch)->record_stride, k, (s).turn);         \
+        STORE_POLAR3(bond_shear, (launch)->record_stride, k, (s).shear);       \
+        STORE_AXIAL3(bond_turn, (launch)->record_stride, k, (s).turn);         \
     } while (0)
 
 typedef struct bond_state {

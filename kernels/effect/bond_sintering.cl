@@ -41,8 +41,8 @@
         (s).count = bonded[k];                                           \
         (s).bonding = BONDING_LOAD(launch, k);                           \
         (s).gap = bond_gap[k];                                           \
-        (s).shear = LOAD3(bond_shear, (launch)->record_stride, k);       \
-        (s).turn = LOAD3(bond_turn, (launch)->record_stride, k);         \
+        (s).shear = LOAD_POLAR3(bond_shear, (launch)->record_stride, k);       \
+        (s).turn = LOAD_AXIAL3(bond_turn, (launch)->record_stride, k);         \
         (s).growth = neck_growth[k];                                     \
         (s).growth_low = neck_growth_low[k];                             \
     } while (0)
@@ -50,8 +50,8 @@
     do {                                                                 \
         bonded[k] = (s).count;                                           \
         bond_gap[k] = (s).gap;                                           \
-        STORE3(bond_shear, (launch)->record_stride, k, (s).shear);       \
-        STORE3(bond_turn, (launch)->record_stride, k, (s).turn);         \
+        STORE_POLAR3(bond_shear, (launch)->record_stride, k, (s).shear);       \
+        STORE_AXIAL3(bond_turn, (launch)->record_stride, k, (s).turn);         \
         neck_growth[k] = (s).growth;                                     \
         neck_growth_low[k] = (s).growth_low;                             \
     } while (0)

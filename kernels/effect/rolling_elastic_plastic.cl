@@ -12,8 +12,8 @@
 #define ROLLING_TWIST R(1.0)
 #endif
 #define ROLLING_PAIR_FIELDS(READ, WRITE) WRITE(real, rolling_spring)
-#define ROLLING_LOAD(launch, k, s) (s).spring = LOAD3(rolling_spring, (launch)->record_stride, k)
-#define ROLLING_STORE(launch, k, s) STORE3(rolling_spring, (launch)->record_stride, k, (s).spring)
+#define ROLLING_LOAD(launch, k, s) (s).spring = LOAD_AXIAL3(rolling_spring, (launch)->record_stride, k)
+#define ROLLING_STORE(launch, k, s) STORE_AXIAL3(rolling_spring, (launch)->record_stride, k, (s).spring)
 
 typedef struct rolling_state {
     vec3 spring;

@@ -4,23 +4,23 @@
 #define ROTATION_PARTICLE_FIELDS(READ, WRITE) WRITE(exact, spin) READ(real, torque)
 #define ROTATION_OBSERVE_FIELDS(READ, WRITE) READ(exact, spin)
 #define ROTATION_LIMIT_FIELDS(READ, WRITE) READ(real, torque)
-#define ROTATION_LOAD(launch, i) GRAIN3(spin, i)
+#define ROTATION_LOAD(launch, i) GRAIN_AXIAL3(spin, i)
 #define ROTATION_ROWS 3
-#define ROTATION_ROWS_FILL(i, to) rows_vec3(spin, i, to)
-#define ROTATION_OF_ROWS(rows, n, lane) ROW_VEC3(rows, n, lane)
-#define ROTATION_EXACT_ROWS_FILL(i, to) rows_exact3(spin, i, to)
-#define ROTATION_PRECISE_OF_ROWS(rows, n, lane) ROW_PRECISE3(rows, n, lane)
-#define ROTATION_TO_ROWS(rows, n, lane, t) ROW_SET_VEC3(rows, n, lane, t)
+#define ROTATION_ROWS_FILL(i, to) rows_axial3(spin, i, to)
+#define ROTATION_OF_ROWS(rows, n, lane) ROW_AXIAL3(rows, n, lane)
+#define ROTATION_EXACT_ROWS_FILL(i, to) rows_exact_axial3(spin, i, to)
+#define ROTATION_PRECISE_OF_ROWS(rows, n, lane) ROW_PRECISE_AXIAL3(rows, n, lane)
+#define ROTATION_TO_ROWS(rows, n, lane, t) ROW_SET_AXIAL3(rows, n, lane, t)
 #define ROTATION_ASK_FOR(i) ASK_FOR(spin + 3 * (i))
-#define ROTATION_PRECISE(launch, i) PRECISE_GRAIN3(spin, i)
-#define ROTATION_STORE(launch, i, w) SET_GRAIN3(spin, i, w)
+#define ROTATION_PRECISE(launch, i) PRECISE_GRAIN_AXIAL3(spin, i)
+#define ROTATION_STORE(launch, i, w) SET_GRAIN_AXIAL3(spin, i, w)
 #define ROTATION_STORE_TORQUE(launch, k, owner_torque, other_torque)                   \
     do {                                                                               \
-        STORE3(torque, (launch)->record_stride, k, owner_torque);                      \
-        STORE3(torque + 3 * (launch)->record_stride, (launch)->record_stride, k, other_torque); \
+        STORE_AXIAL3(torque, (launch)->record_stride, k, owner_torque);                \
+        STORE_AXIAL3(torque + 3 * (launch)->record_stride, (launch)->record_stride, k, other_torque); \
     } while (0)
 /* `side` has all bits set for the other body, none for the owner. */
-#define ROTATION_GATHER(launch, k, side) LOAD3(torque + ((3 * (launch)->record_stride) & (clast_i64)(side)), (launch)->record_stride, k)
+#define ROTATION_GATHER(launch, k, side) LOAD_AXIAL3(torque + ((3 * (launch)->record_stride) & (clast_i64)(side)), (launch)->record_stride, k)
 /* The step limit keeps the normal of a record where its force stands, and the modes where its torque does. */
 #define LIMIT_STORE(launch, k, twice, direction, n, t, r)                     \
     do {                                                                      \

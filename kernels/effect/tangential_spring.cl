@@ -29,8 +29,8 @@ INLINE vec3 spring_return(const contact *c, real compliance, real damping, real 
 }
 
 #define TANGENTIAL_PAIR_FIELDS(READ, WRITE) WRITE(real, tangential_spring)
-#define TANGENTIAL_LOAD(launch, k, s) (s).spring = LOAD3(tangential_spring, (launch)->record_stride, k)
-#define TANGENTIAL_STORE(launch, k, s) STORE3(tangential_spring, (launch)->record_stride, k, (s).spring)
+#define TANGENTIAL_LOAD(launch, k, s) (s).spring = LOAD_POLAR3(tangential_spring, (launch)->record_stride, k)
+#define TANGENTIAL_STORE(launch, k, s) STORE_POLAR3(tangential_spring, (launch)->record_stride, k, (s).spring)
 
 typedef struct tangential_state {
     vec3 spring;

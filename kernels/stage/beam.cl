@@ -29,7 +29,7 @@ __kernel void beam_bounds(const clast_launch launch, __global const clast_column
         return;
     for (int s = 0; s < BEAM_SIDES; s++) {
         const clast_columns c = columns[s];
-        vec3 d = sub(GRAIN3(position, i), from3(c.origin));
+        vec3 d = sub(GRAIN_POLAR3(position, i), from3(c.origin));
         int u = beam_place(&c, from3(c.across), d), v = beam_place(&c, from3(c.beside), d);
         atomic_min(&bounds[4 * s], u);
         atomic_max(&bounds[4 * s + 1], u);
@@ -43,7 +43,7 @@ __kernel void beam_surface(const clast_launch launch, __global const clast_colum
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
-    vec3 x = GRAIN3(position, i);
+    vec3 x = GRAIN_POLAR3(position, i);
     for (int s = 0; s < BEAM_SIDES; s++) {
         const clast_columns c = columns[s];
         atomic_max(&surface[beam_column(&c, x)], beam_top(&c, x, GRAIN_RADIUS(i)));
@@ -56,7 +56,7 @@ __kernel void beam_depth(const clast_launch launch, __global const clast_columns
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
-    vec3 x = GRAIN3(position, i);
+    vec3 x = GRAIN_POLAR3(position, i);
     for (int s = 0; s < BEAM_SIDES; s++) {
         const clast_columns c = columns[s];
         long below = (long)surface[beam_column(&c, x)] - (long)beam_top(&c, x, GRAIN_RADIUS(i));

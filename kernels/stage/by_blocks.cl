@@ -19,15 +19,26 @@
 
 #define ROW(rows, n) ((rows) + (n) * CLAST_BLOCK)
 #define ROW_NUMBER(rows, n, lane) (rows)[(n) * CLAST_BLOCK + (lane)]
-#define ROW_VEC3(rows, n, lane) v3(ROW_NUMBER(rows, n, lane), ROW_NUMBER(rows, (n) + 1, lane), ROW_NUMBER(rows, (n) + 2, lane))
-
-#define ROW_PRECISE3(rows, n, lane) \
-    precise3_of(ROW_PRECISE(rows, n, lane), ROW_PRECISE(rows, (n) + EXACT_REALS, lane), ROW_PRECISE(rows, (n) + 2 * EXACT_REALS, lane))
-#define ROW_SET_VEC3(rows, n, lane, v)           \
-    do {                                         \
-        ROW_NUMBER(rows, n, lane) = (v).x;       \
-        ROW_NUMBER(rows, (n) + 1, lane) = (v).y; \
-        ROW_NUMBER(rows, (n) + 2, lane) = (v).z; \
+#define ROW_POLAR3(rows, n, lane) v3(ROW_NUMBER(rows, n, lane), ROW_NUMBER(rows, (n) + 1, lane), SPACE_NUMBER(ROW_NUMBER(rows, (n) + 2, lane)))
+#define ROW_AXIAL3(rows, n, lane) \
+    v3(SPACE_NUMBER(ROW_NUMBER(rows, n, lane)), SPACE_NUMBER(ROW_NUMBER(rows, (n) + 1, lane)), ROW_NUMBER(rows, (n) + 2, lane))
+#define ROW_PRECISE_POLAR3(rows, n, lane)                                                  \
+    precise3_of(ROW_PRECISE(rows, n, lane), ROW_PRECISE(rows, (n) + EXACT_REALS, lane),     \
+                SPACE_PRECISE(ROW_PRECISE(rows, (n) + 2 * EXACT_REALS, lane)))
+#define ROW_PRECISE_AXIAL3(rows, n, lane)                                                                              \
+    precise3_of(SPACE_PRECISE(ROW_PRECISE(rows, n, lane)), SPACE_PRECISE(ROW_PRECISE(rows, (n) + EXACT_REALS, lane)),   \
+                ROW_PRECISE(rows, (n) + 2 * EXACT_REALS, lane))
+#define ROW_SET_POLAR3(rows, n, lane, v)                      \
+    do {                                                      \
+        ROW_NUMBER(rows, n, lane) = (v).x;                    \
+        ROW_NUMBER(rows, (n) + 1, lane) = (v).y;              \
+        SPACE_STORE(ROW_NUMBER(rows, (n) + 2, lane) = (v).z); \
+    } while (0)
+#define ROW_SET_AXIAL3(rows, n, lane, v)                      \
+    do {                                                      \
+        SPACE_STORE(ROW_NUMBER(rows, n, lane) = (v).x);       \
+        SPACE_STORE(ROW_NUMBER(rows, (n) + 1, lane) = (v).y); \
+        ROW_NUMBER(rows, (n) + 2, lane) = (v).z;              \
     } while (0)
 
 /* ---- records ---- */
@@ -47,12 +58,21 @@ INLINE void rows_turn(__global const exact *field, int4 i, ulong4 *x, ulong4 *y,
 }
 
 /* Three rows of numbers as they are nearest to reals. */
-INLINE void rows_vec3(__global const exact *field, int4 i, real *to)
+INLINE void rows_polar3(__global const exact *field, int4 i, real *to)
 {
     ulong4 x, y, z;
     rows_turn(field, i, &x, &y, &z);
     row_rounded(x, to);
     row_rounded(y, ROW(to, 1));
+    SPACE_STORE(row_rounded(z, ROW(to, 2)));
+}
+
+INLINE void rows_axial3(__global const exact *field, int4 i, real *to)
+{
+    ulong4 x, y, z;
+    rows_turn(field, i, &x, &y, &z);
+    SPACE_STORE(row_rounded(x, to));
+    SPACE_STORE(row_rounded(y, ROW(to, 1)));
     row_rounded(z, ROW(to, 2));
 }
 
@@ -64,12 +84,21 @@ INLINE void rows_number(__global const exact *field, int4 i, real *to)
 }
 
 /* Three numbers with all their bits. */
-INLINE void rows_exact3(__global const exact *field, int4 i, real *to)
+INLINE void rows_exact_polar3(__global const exact *field, int4 i, real *to)
 {
     ulong4 x, y, z;
     rows_turn(field, i, &x, &y, &z);
     row_exact(x, to, CLAST_BLOCK);
     row_exact(y, ROW(to, EXACT_REALS), CLAST_BLOCK);
+    SPACE_STORE(row_exact(z, ROW(to, 2 * EXACT_REALS), CLAST_BLOCK));
+}
+
+INLINE void rows_exact_axial3(__global const exact *field, int4 i, real *to)
+{
+    ulong4 x, y, z;
+    rows_turn(field, i, &x, &y, &z);
+    SPACE_STORE(row_exact(x, to, CLAST_BLOCK));
+    SPACE_STORE(row_exact(y, ROW(to, EXACT_REALS), CLAST_BLOCK));
     row_exact(z, ROW(to, 2 * EXACT_REALS), CLAST_BLOCK);
 }
 
@@ -77,10 +106,10 @@ INLINE void rows_exact3(__global const exact *field, int4 i, real *to)
 INLINE void rows_fill(int4 i, real *to PAIR_DECLARE)
 {
     __global const ulong *radii = (__global const ulong *)radius;
-    rows_exact3(position, i, ROW(to, ROW_POSITION));
+    rows_exact_polar3(position, i, ROW(to, ROW_POSITION));
     row_exact((ulong4)(radii[i.s0], radii[i.s1], radii[i.s2], radii[i.s3]), ROW(to, ROW_RADIUS), CLAST_BLOCK);
     vstore4((real4)(mass[i.s0], mass[i.s1], mass[i.s2], mass[i.s3]), 0, ROW(to, ROW_MASS));
-    rows_vec3(velocity, i, ROW(to, ROW_VELOCITY));
+    rows_polar3(velocity, i, ROW(to, ROW_VELOCITY));
     ROTATION_ROWS_FILL(i, ROW(to, ROW_SPIN));
     INTEGRATOR_ROWS_FILL(i, ROW(to, ROW_PAST));
     TEMPERATURE_ROWS_FILL(i, ROW(to, ROW_TEMPERATURE));
@@ -88,10 +117,10 @@ INLINE void rows_fill(int4 i, real *to PAIR_DECLARE)
 
 INLINE void sphere_of_rows(const real *rows, int lane, sphere *s)
 {
-    s->position = ROW_PRECISE3(rows, ROW_POSITION, lane);
+    s->position = ROW_PRECISE_POLAR3(rows, ROW_POSITION, lane);
     s->radius = ROW_PRECISE(rows, ROW_RADIUS, lane);
     s->mass = ROW_NUMBER(rows, ROW_MASS, lane);
-    s->velocity = ROW_VEC3(rows, ROW_VELOCITY, lane);
+    s->velocity = ROW_POLAR3(rows, ROW_VELOCITY, lane);
     s->spin = ROTATION_OF_ROWS(rows, ROW_SPIN, lane);
     s->past_velocity = INTEGRATOR_VELOCITY_OF_ROWS(rows, ROW_PAST, lane, s->velocity);
     s->past_spin = INTEGRATOR_SPIN_OF_ROWS(rows, ROW_PAST + 3, lane, s->spin);
@@ -204,18 +233,18 @@ __kernel void pair_stage(const clast_launch launch, __global const clast_control
 
 INLINE void moving_fill(int4 i, real *to PARTICLE_DECLARE)
 {
-    rows_exact3(position, i, ROW(to, ROW_PLACE));
-    rows_exact3(built_position, i, ROW(to, ROW_BUILT));
-    rows_exact3(velocity, i, ROW(to, ROW_TRAVEL));
+    rows_exact_polar3(position, i, ROW(to, ROW_PLACE));
+    rows_exact_polar3(built_position, i, ROW(to, ROW_BUILT));
+    rows_exact_polar3(velocity, i, ROW(to, ROW_TRAVEL));
     ROTATION_EXACT_ROWS_FILL(i, ROW(to, ROW_TURNING));
     INTEGRATOR_EXACT_ROWS_FILL(i, ROW(to, ROW_KEPT));
 }
 
 INLINE void moving_of_rows(const real *rows, int lane, moving *m)
 {
-    m->position = ROW_PRECISE3(rows, ROW_PLACE, lane);
-    m->built_position = ROW_PRECISE3(rows, ROW_BUILT, lane);
-    m->velocity = ROW_PRECISE3(rows, ROW_TRAVEL, lane);
+    m->position = ROW_PRECISE_POLAR3(rows, ROW_PLACE, lane);
+    m->built_position = ROW_PRECISE_POLAR3(rows, ROW_BUILT, lane);
+    m->velocity = ROW_PRECISE_POLAR3(rows, ROW_TRAVEL, lane);
     m->spin = ROTATION_PRECISE_OF_ROWS(rows, ROW_TURNING, lane);
     m->kept_velocity = INTEGRATOR_PRECISE_VELOCITY_OF_ROWS(rows, ROW_KEPT, lane, m->velocity);
     m->kept_spin = INTEGRATOR_PRECISE_SPIN_OF_ROWS(rows, ROW_KEPT + 3 * EXACT_REALS, lane, m->spin);
@@ -245,7 +274,7 @@ INLINE void particle_block(const clast_launch *launch, __global clast_control *c
         vec3 f, t;
         grain_heat h;
         particle_gather(launch, first / CLAST_BLOCK, first % CLAST_BLOCK + lane, &f, &t, &h PARTICLE_PASS);
-        ROW_SET_VEC3(rows, ROW_FORCE, lane, f);
+        ROW_SET_POLAR3(rows, ROW_FORCE, lane, f);
         ROTATION_TO_ROWS(rows, ROW_TORQUE, lane, t);
         CONDUCTION_TO_ROWS(rows, ROW_HEAT, lane, h);
     }
@@ -255,7 +284,7 @@ INLINE void particle_block(const clast_launch *launch, __global clast_control *c
         moving m;
         moving_of_rows(rows, lane, &m);
         CONDUCTION_OF_ROWS(rows, ROW_HEAT, lane, h);
-        far |= particle_step(launch, first + lane, &m, ROW_VEC3(rows, ROW_FORCE, lane), ROTATION_OF_ROWS(rows, ROW_TORQUE, lane), &h PARTICLE_PASS);
+        far |= particle_step(launch, first + lane, &m, ROW_POLAR3(rows, ROW_FORCE, lane), ROTATION_OF_ROWS(rows, ROW_TORQUE, lane), &h PARTICLE_PASS);
     }
     if (far)
         particle_halt(launch, control);

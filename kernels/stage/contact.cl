@@ -36,9 +36,9 @@ typedef struct sphere {
 
 INLINE void sphere_load(const clast_launch *launch, int i, sphere *s PAIR_DECLARE)
 {
-    s->position = PRECISE_GRAIN3(position, i);
+    s->position = PRECISE_GRAIN_POLAR3(position, i);
     s->radius = precise_load(radius[i]);
-    s->velocity = GRAIN3(velocity, i);
+    s->velocity = GRAIN_POLAR3(velocity, i);
     s->past_velocity = INTEGRATOR_PAST_VELOCITY(i, s->velocity);
     s->spin = ROTATION_LOAD(launch, i);
     s->past_spin = INTEGRATOR_PAST_SPIN(i, s->spin);
@@ -109,9 +109,9 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
 INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_touch *touch PAIR_DECLARE)
 {
     int i = owner[k];
-    precise3 x = PRECISE_GRAIN3(position, i);
+    precise3 x = PRECISE_GRAIN_POLAR3(position, i);
     precise radius_i = precise_load(radius[i]);
-    vec3 v = GRAIN3(velocity, i);
+    vec3 v = GRAIN_POLAR3(velocity, i);
     c->radius_i = rounded(radius_i);
     c->radius_j = c->radius_i;
     c->spin_i = ROTATION_LOAD(launch, i);

@@ -26,12 +26,12 @@ BODY void observe_particles_unit(int chunk, const clast_launch *launch, __global
     precise sum[OBSERVE_PARTICLE_SUMS], one_half = precise_from(R(0.5));
     for (int q = 0; q < OBSERVE_PARTICLE_SUMS; q++)
         sum[q] = precise_from(R(0.0));
-    precise3 g = PRECISE3(launch->gravity);
+    precise3 g = PRECISE_POLAR3(launch->gravity);
     for (int n = first; n < end; n++) {
         int i = where[n];
         if (i < 0)
             continue;
-        precise3 x = PRECISE_GRAIN3(position, i), v = PRECISE_GRAIN3(velocity, i), w = ROTATION_PRECISE(launch, i);
+        precise3 x = PRECISE_GRAIN_POLAR3(position, i), v = PRECISE_GRAIN_POLAR3(velocity, i), w = ROTATION_PRECISE(launch, i);
         precise m = precise_from(mass[i]), r = precise_load(radius[i]);
         precise inertia = precise_mul(precise_mul(precise_mul(precise_from(R(0.4)), m), r), r);
         observe_add(sum, precise_mul(precise_mul(one_half, m), precise3_dot(v, v)));
@@ -329,9 +329,9 @@ BODY void guard_particles_unit(int chunk, const clast_launch *launch, __global c
     int first = chunk * OBSERVE_CHUNK, end = min(first + OBSERVE_CHUNK, launch->particle_count);
     int bad = -1, fastest = -1, left = -1;
     real most = R(0.0);
-    vec3 low = from3(launch->low), high = from3(launch->high), common = from3(launch->drift); /* of velocity here */
+    vec3 low = from3(launch->low), high = from3(launch->high), common = POLAR3(launch->drift); /* of velocity here */
     for (int i = first; i < end; i++) {
-        vec3 x = GRAIN3(position, i), v = sub(GRAIN3(velocity, i), common);
+        vec3 x = GRAIN_POLAR3(position, i), v = sub(GRAIN_POLAR3(velocity, i), common);
         real speed2 = dot3(v, v);
         if (!is_number(x.x + x.y + x.z) || !is_number(speed2)) {
             if (bad < 0)
@@ -361,7 +361,7 @@ __kernel void guard_particles(const clast_launch launch, __global const exact *r
 INLINE real guard_of_pair(const clast_launch *launch, int k PAIR_DECLARE)
 {
     int i = owner[k], j = other[k];
-    apart3 d = periodic_nearest(launch, apart_of(PRECISE_GRAIN3(position, j), PRECISE_GRAIN3(position, i)));
+    apart3 d = periodic_nearest(launch, apart_of(PRECISE_GRAIN_POLAR3(position, j), PRECISE_GRAIN_POLAR3(position, i)));
     precise radius_i = precise_load(radius[i]), radius_j = precise_load(radius[j]);
     real smaller = fmin(rounded(radius_i), rounded(radius_j)), distance = sqrt(dot3(apart_vector(d), apart_vector(d)));
     return sphere_overlap(d, distance, radius_i, radius_j) / smaller;

@@ -36,7 +36,7 @@
     vec3 lever = cross3(c.n, out.tangential);                            \
     vec3 on_owner = add_scaled(out.rolling, c.arm_i, lever);             \
     int at = k - launch->force_shift;                                    \
-    STORE3(force, launch->record_stride, at, total);                     \
+    STORE_POLAR3(force, launch->record_stride, at, total);                     \
     account;                                                             \
     keep(launch, k, s)
 #define PAIR_WORK_OF_WALL ledger_wall(&s.ledger, c.span *(dot3(total, touch.velocity) + dot3(out.rolling, c.spin_j)))

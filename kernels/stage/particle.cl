@@ -23,7 +23,7 @@ INLINE void particle_gather(const clast_launch *launch, int block, int lane, vec
         /* without a branch, which nobody could foretell */
         int other = entry >> 31, k = (entry ^ other) - other - 1;
         real sign = (real)(2 * other + 1);
-        f = add_scaled(f, sign, LOAD3(force, launch->record_stride, k));
+        f = add_scaled(f, sign, LOAD_POLAR3(force, launch->record_stride, k));
         t = add(t, ROTATION_GATHER(launch, k, other));
         real flow = CONDUCTION_GATHER(launch, k, sign);
         heat_in += flow;
@@ -38,8 +38,8 @@ INLINE void particle_gather(const clast_launch *launch, int block, int lane, vec
 /* A grain as its heat laws see it. */
 INLINE void particle_grain(const clast_launch *launch, int i, grain *g PARTICLE_DECLARE)
 {
-    g->position = GRAIN3(position, i);
-    g->velocity = GRAIN3(velocity, i);
+    g->position = GRAIN_POLAR3(position, i);
+    g->velocity = GRAIN_POLAR3(velocity, i);
     g->radius = GRAIN_RADIUS(i);
     g->mass = mass[i];
     g->temperature = TEMPERATURE_OF_GRAIN(i);
@@ -96,9 +96,9 @@ typedef struct moving {
 
 INLINE void moving_load(const clast_launch *launch, int i, moving *g PARTICLE_DECLARE)
 {
-    g->position = PRECISE_GRAIN3(position, i);
-    g->built_position = PRECISE_GRAIN3(built_position, i);
-    g->velocity = PRECISE_GRAIN3(velocity, i);
+    g->position = PRECISE_GRAIN_POLAR3(position, i);
+    g->built_position = PRECISE_GRAIN_POLAR3(built_position, i);
+    g->velocity = PRECISE_GRAIN_POLAR3(velocity, i);
     g->spin = ROTATION_PRECISE(launch, i);
     g->kept_velocity = INTEGRATOR_VELOCITY(i, g->velocity);
     g->kept_spin = INTEGRATOR_SPIN(i, g->spin);
@@ -113,7 +113,7 @@ INLINE real particle_advance(const clast_launch *launch, int i, const moving *g,
     int mover_i = MOTION_GRAIN(i);
     precise3 x = g->position, v = g->velocity, w = RADIUS_SPIN(i, g->spin, grown), turning = RADIUS_SPIN(i, g->kept_spin, grown);
     __global const clast_mover *row = MOTION_ROW(launch);
-    f = add_scaled(f, m, from3(launch->gravity));
+    f = add_scaled(f, m, POLAR3(launch->gravity));
     vec3 damped = body_force(f, rounded3(v), m), damped_t = body_force(t, rounded3(w), inertia);
     vec3 a = scale(R(1.0) / m, damped);
     precise3 v1 = integrate_velocity(g->kept_velocity, a, kick);
@@ -129,13 +129,13 @@ INLINE real particle_advance(const clast_launch *launch, int i, const moving *g,
     INTEGRATOR_KEEP_SPIN(i, motion_spin(row, mover_i, w1));
     w1 = motion_spin(row, mover_i, w1);
     x1 = periodic_wrap(launch, x1);
-    SET_GRAIN3(position, i, x1);
-    SET_GRAIN3(velocity, i, v2);
+    SET_GRAIN_POLAR3(position, i, x1);
+    SET_GRAIN_POLAR3(velocity, i, v2);
     ROTATION_STORE(launch, i, w2);
     ORIENTATION_ADVANCE(launch, i, rounded3(w1));
     DISSIPATION_KEEP(i, &step);
     LEDGER_ADVANCE(launch, i, &step);
-    apart3 since_built = apart_less(apart_of(x1, g->built_position), PRECISE3(launch->drift));
+    apart3 since_built = apart_less(apart_of(x1, g->built_position), PRECISE_POLAR3(launch->drift));
     vec3 moved = apart_vector(periodic_nearest(launch, since_built));
     GROWTH_KEEP(i, grown);
     return RADIUS_TRAVEL(i, dot3(moved, moved));

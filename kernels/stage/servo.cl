@@ -54,7 +54,7 @@ __kernel void servo_stage(const clast_launch launch, __global clast_control *res
         long mine = 0;
         for (int k = first_record + lane; k < end_record && servos[d].live; k += CLAST_BLOCK)
             if (row[other[k]].drive == d)
-                mine += convert_long_sat_rte(inverse * dot3(LOAD3(force, launch.record_stride, k), direction));
+                mine += convert_long_sat_rte(inverse * dot3(LOAD_POLAR3(force, launch.record_stride, k), direction));
         sum[lane] = mine;
         barrier(CLK_LOCAL_MEM_FENCE);
         if (lane == 0 && servos[d].live && !halted) {

@@ -50,7 +50,7 @@ __kernel void table_bin(const clast_launch launch, __global const clast_grid *re
     int i = get_global_id(0);
     if (i >= launch.particle_count)
         return;
-    vec3 x = GRAIN3(position, i);
+    vec3 x = GRAIN_POLAR3(position, i);
     int cell = table_cell(grid, table_level(grid, GRAIN_RADIUS(i)), x);
     vec3 low = from3(launch.low), high = from3(launch.high);
     bool inside = x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y && x.z >= low.z && x.z <= high.z;
@@ -106,7 +106,7 @@ typedef struct table_grain {
 INLINE table_grain table_grain_of(int i, __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id)
 {
     table_grain g;
-    g.place = PRECISE_GRAIN3(position, i);
+    g.place = PRECISE_GRAIN_POLAR3(position, i);
     g.radius = precise_load(radius[i]);
     g.id = id[i];
     return g;
@@ -116,7 +116,7 @@ INLINE table_grain table_grain_of(int i, __global const exact *restrict position
 INLINE bool table_near(const clast_launch *launch, real skin, const table_grain *g, int j, __global const exact *restrict position,
                        __global const exact *restrict radius)
 {
-    vec3 d = apart_vector(periodic_nearest(launch, apart_of(PRECISE_GRAIN3(position, j), g->place)));
+    vec3 d = apart_vector(periodic_nearest(launch, apart_of(PRECISE_GRAIN_POLAR3(position, j), g->place)));
     real reach = rounded(g->radius) + rounded(precise_load(radius[j])) + skin;
     return dot3(d, d) < reach * reach;
 }
@@ -447,7 +447,7 @@ __kernel void table_travel(const clast_launch launch, __global const exact *rest
     int chunk = get_global_id(0), first = chunk * SCAN_CHUNK, end = min(first + SCAN_CHUNK, launch.particle_count);
     real most = R(0.0);
     for (int i = first; i < end; i++) {
-        apart3 since_built = apart_less(apart_of(PRECISE_GRAIN3(position, i), PRECISE_GRAIN3(built_position, i)), PRECISE3(launch.drift));
+        apart3 since_built = apart_less(apart_of(PRECISE_GRAIN_POLAR3(position, i), PRECISE_GRAIN_POLAR3(built_position, i)), PRECISE_POLAR3(launch.drift));
         vec3 moved = apart_vector(periodic_nearest(&launch, since_built));
         most = fmax(most, dot3(moved, moved));
     }

@@ -36,7 +36,7 @@ BODY void table_count_walls_unit(int i, const clast_launch *launch, __global con
 {
     uint found = 0;
     if (i < launch->particle_count) {
-        precise3 x = PRECISE_GRAIN3(position, i);
+        precise3 x = PRECISE_GRAIN_POLAR3(position, i);
         for (int f = 0; f < launch->face_count; f++)
             found += table_reaches(faces + f, x, GRAIN_RADIUS(i) * (R(1.0) + number(grid->wall_share)) + number(grid->skin)) ? 1 : 0;
         slot_count[i] += found;
@@ -59,7 +59,7 @@ BODY void table_fill_walls_unit(int i, const clast_launch *launch, __global cons
 {
     if (i >= launch->particle_count)
         return;
-    precise3 x = PRECISE_GRAIN3(position, i);
+    precise3 x = PRECISE_GRAIN_POLAR3(position, i);
     uint k = wall_base + wall_start[i];
     for (int f = 0; f < launch->face_count; f++)
         if (table_reaches(faces + f, x, GRAIN_RADIUS(i) * (R(1.0) + number(grid->wall_share)) + number(grid->skin))) {

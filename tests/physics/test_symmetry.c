@@ -226,6 +226,53 @@ static void test_plane_stays_plane(void **state)
     case_close(&c);
 }
 
+/* Programs of two dimensions leave out what is 0, and nothing else: the same grains in three give the same numbers, forces and torques included. */
+static physics_case tray(int dimensions)
+{
+    text t = head();
+    put(&t, "dimensions: %d\ngravity_m_s2: [0.3, -9.81, 0]\nwalls: [{name: tray, shape: box, low_m: [0, 0, -0.01], high_m: [0.02, 0.02, 0.01], open: "
+            "[y_high]}]\nparticles:\n  - name: p\n    material: m\n    generator: list\n    items:\n", dimensions);
+    for (int n = 0; n < 24; n++)
+        put_grain(&t, (n % 3 ? 1.0 : 0.8) * radius, (double[]){2.2 * radius * (1 + n % 8), 2.2 * radius * (1 + n / 8), 0},
+                  (double[]){0.2 * cos(n), -0.3 + 0.2 * sin(n), 0}, (double[]){0, 0, 50.0 * cos(3 * n)});
+    return case_open(&t);
+}
+
+static void test_plane_is_part_of_space(void **state)
+{
+    (void)state;
+    double *x[2], *w[2], *total[2][2];
+    int count = 0;
+    for (int d = 0; d < 2; d++) {
+        physics_case c = tray(2 + d);
+        run_touching(&c, 1500);
+        count = c.bed.count;
+        x[d] = case_field(&c, "position");
+        w[d] = case_field(&c, "spin");
+        for (int torque = 0; torque < 2; torque++)
+            MUST(observe_totals(c.sim, torque, &total[d][torque], why));
+        case_close(&c);
+    }
+    double pushed = 0.0, turned = 0.0;
+    for (int n = 0; n < 3 * count; n++) {
+        pushed = fmax(pushed, fabs(total[1][0][n]));
+        turned = fmax(turned, fabs(total[1][1][n]));
+    }
+    assert_true(pushed > 0.0 && turned > 0.0);
+    for (int n = 0; n < 3 * count; n++) {
+        NEAR(x[0][n], x[1][n], grown() * radius);
+        NEAR(w[0][n], w[1][n], grown() * speed / radius);
+        NEAR(total[0][0][n], total[1][0][n], 100.0 * grown() * pushed);
+        NEAR(total[0][1][n], total[1][1][n], 100.0 * grown() * turned);
+    }
+    for (int d = 0; d < 2; d++) {
+        free(x[d]);
+        free(w[d]);
+        free(total[d][0]);
+        free(total[d][1]);
+    }
+}
+
 /* A cluster cut by the faces of a periodic box moves as the one in the open. */
 static void test_periodic(void **state)
 {
@@ -270,6 +317,7 @@ int main(void)
         cmocka_unit_test(test_rest),
         cmocka_unit_test(test_rest_apart),
         cmocka_unit_test(test_plane_stays_plane),
+        cmocka_unit_test(test_plane_is_part_of_space),
         cmocka_unit_test(test_periodic),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -6,6 +6,7 @@
 static const law *const every_law[] = {
     &law_precision_mixed,
     &law_composition_several,
+    &law_dimensions_two,
     &law_periodic_box,
     &law_motion_groups,
     &law_rotation_spin,

@@ -278,7 +278,7 @@ static void check_derived(const live_laws *live, const char *what)
     static const slot_id thermal[] = {SLOT_MODULUS, SLOT_CONDUCTION,      SLOT_CONVECTION,      SLOT_RADIATION,
                                       SLOT_SOURCE,  SLOT_HEAT_GENERATION, SLOT_DISSIPATION_HEAT};
     static const slot_id surfaces[] = {SLOT_CONVECTION, SLOT_RADIATION};
-    static const slot_id never[] = {SLOT_PRECISION, SLOT_COMPOSITION, SLOT_PERIODIC,  SLOT_MOTION,         SLOT_SUBSTANCE,
+    static const slot_id never[] = {SLOT_PRECISION, SLOT_COMPOSITION, SLOT_DIMENSIONS, SLOT_PERIODIC,  SLOT_MOTION,         SLOT_SUBSTANCE,
                                     SLOT_SOFTENING, SLOT_LEDGER,      SLOT_WALL_HEAT, SLOT_THERMAL_GROUPS, SLOT_ORIENTATION};
     for (size_t n = 0; n < sizeof never / sizeof *never; n++)
         if (live->law[never[n]])

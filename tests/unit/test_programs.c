@@ -107,7 +107,7 @@ static int files_of(const live_laws *live, const char **files)
 {
     const char *table[LIVE_TABLE_FILES];
     int count = live_files(live, files, FILES_MAX - 1 - LIVE_TABLE_FILES), tables = live_table_files(live, table);
-    for (int f = 2; f < tables; f++) /* the first two, precision and periodic box, are in both */
+    for (int f = 3; f < tables; f++) /* the first three, precision, dimensions and periodic box, are in both */
         files[count++] = table[f];
     files[count++] = "stage/step_loop.cl";
     live_laws moving = *live; /* these are of a frozen stage, which has all files but that of stages that move */
@@ -526,7 +526,7 @@ static void test_shared_structs(void **state)
     cl_ulong result[PLACES];
     size_t one = 1;
     device *d = case_device();
-    MUST(program_build(d, text, &program, why));
+    MUST(program_build(d, text, "", &program, why));
     cl_kernel kernel = clCreateKernel(program, "shared_places", &code);
     assert_int_equal(code, CL_SUCCESS);
     cl_mem mem = clCreateBuffer(d->context, CL_MEM_READ_WRITE, sizeof result, NULL, &code);

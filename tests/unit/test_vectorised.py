@@ -62,8 +62,8 @@ class Vectorised(unittest.TestCase):
         cls.caches = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.caches.cleanup)
 
-    def check(self, effects, walls, dynamic="0.4", exponent="1"):
-        text = SCENE.replace("EFFECTS", effects).replace("WALLS", walls).replace("DYNAMIC", dynamic).replace("EXPONENT", exponent)
+    def check(self, effects, walls, dynamic="0.4", exponent="1", scene=SCENE):
+        text = scene.replace("EFFECTS", effects).replace("WALLS", walls).replace("DYNAMIC", dynamic).replace("EXPONENT", exponent)
         code = VECTOR.machine_code(CLAST, text, caches=self.caches.name)
         if code is None:
             self.skipTest("this pocl leaves no pair_stage in its cache")
@@ -92,6 +92,12 @@ class Vectorised(unittest.TestCase):
         self.assertGreaterEqual(found["vector roots"], least["vector roots"], f"{found}, alone {least}")
         self.assertGreater(found["vector divisions"], least["vector divisions"], f"{found}, alone {least}")  # those of the particle stage too
         self.assertEqual(found["calls"], [])
+
+    def test_two_dimensions(self):
+        flat = SCENE.replace("[0, 0, -9.81]", "[0, -9.81, 0]\ndimensions: 2").replace("[5, 5, 5]", "[5, 5, 1]")
+        floor = PLANE.replace("0, 0, -0.001", "0, -0.001, 0").replace("0, 0, 1]", "0, 1, 0]")
+        self.check(MINDLIN + ROLLING, floor, scene=flat)
+        self.check(MINDLIN + ROLLING, floor + "\nprecision: mixed", scene=flat)
 
     def test_mixed(self):
         self.check(MINDLIN + ROLLING, PLANE + "\nprecision: mixed")
