@@ -20,6 +20,8 @@
 #define CHUNK_PER_BLOCK 2048
 /* A chunk of a stream in chunks that are launched. */
 #define STREAM_CHUNK_SHARE 4
+/* Steps between tables, times records, from which streams take off more than they cost (docs/performance.md). */
+#define STREAMS_PAY 3e5
 
 /* What a plan is made from; arrays of the host. */
 typedef struct planning {
@@ -258,6 +260,14 @@ static status plan_chunks(simulation *sim, planning *p, failure *why)
     return pays ? place_slots(sim, p, wall_base - room, why) : STATUS_OK;
 }
 
+/* Streams take some 4 % off a step of a bed that fits the caches, and add to every table a look at its blocks, which the host waits for: a fifth of a
+ * millisecond. Before anything is known of how long tables last, they may last for ever. */
+static bool streams_pay(const simulation *sim)
+{
+    double steps = sim->loop.table_steps;
+    return steps <= 0.0 || steps * (double)sim->table.wall_base > STREAMS_PAY;
+}
+
 /* Several work-groups have a stream each; beds that fit the caches go in one chunk a stream. A chunk of a stream costs no launch, and may be smaller. */
 static void choose_chunks(const simulation *sim, planning *p)
 {
@@ -265,7 +275,7 @@ static void choose_chunks(const simulation *sim, planning *p)
     p->chunk = chunk_records(sim);
     if (members > 1 && p->chunk > 0 && sim->scene->table.chunk_records == 0)
         p->chunk = p->chunk / STREAM_CHUNK_SHARE > sim->block ? p->chunk / STREAM_CHUNK_SHARE : sim->block;
-    if (members > 1 && p->chunk == 0 && whole >= members * sim->block)
+    if (members > 1 && p->chunk == 0 && whole >= members * sim->block && streams_pay(sim))
         p->chunk = (whole + members - 1) / members + sim->block - 1;
     p->chunk -= p->chunk % sim->block;
     p->chunks = p->chunk > 0 ? (whole + p->chunk - 1) / p->chunk : 0;
