@@ -31,7 +31,8 @@ static status count_records(simulation *sim, int64_t *made, int64_t *alive, fail
     double *sum = malloc(2 * sizeof *sum * (size_t)chunks);
     status result = sum ? observe_partial(sim, 2 * chunks, why) : fail(why, STATUS_ERROR, "out of memory");
     if (result == STATUS_OK)
-        result = launch_set(kernel, "table_bond_sums", why, "mmiii", bonded->mem, sim->partial, sim->table.pair_count, sim->table.wall_base, records);
+        result = launch_set(kernel, "table_bond_sums", why, "mmiii", bonded->mem, sim->partial, sim->table.pair_count, sim->table.wall_base,
+                            records);
     if (result == STATUS_OK)
         result = launch_run(sim, kernel, "table_bond_sums", chunks, 1, why);
     if (result == STATUS_OK)
@@ -80,12 +81,9 @@ bool bonds_are_kept(const simulation *sim)
 /* Indices are no longer those of the ids once grains have been sorted, so the array that leads from ids to them is free. */
 static status find_inverse(simulation *sim, const clast_launch *launch, failure *why)
 {
-    const cl_int none = -1;
-    cl_kernel kernel = launch_kernel(sim, "table_bond_inverse");
     sim->particles_stale = true;
-    TRY_CL(clEnqueueFillBuffer(sim->device->queue, sim->where, &none, sizeof none, 0, 4 * (size_t)sim->stride, 0, NULL, NULL), "table_bond_inverse");
-    TRY(launch_set(kernel, "table_bond_inverse", why, "Lmm", launch, sim->table.work[2], sim->where));
-    return launch_run(sim, kernel, "table_bond_inverse", sim->count, sim->block, why);
+    TRY(table_do_fill(sim, sim->where, 4 * (uint64_t)sim->stride, -1, why));
+    return table_do(sim, "table_bond_inverse", sim->count, sim->block, why, "Lmm", launch, sim->table.work[2], sim->where);
 }
 
 status bonds_keep(simulation *sim, const clast_launch *launch, int room, bool fill, failure *why)
@@ -94,16 +92,15 @@ status bonds_keep(simulation *sim, const clast_launch *launch, int room, bool fi
     if (!bonds_are_kept(sim) || !t->built)
         return STATUS_OK;
     const char *name = fill ? "table_bond_fill" : "table_bond_count";
-    cl_kernel kernel = launch_kernel(sim, name);
     int next = 1 - t->now;
     if (!fill)
         TRY(find_inverse(sim, launch, why));
     cl_mem first = fill ? t->work[3] : t->work[0], second = fill ? t->owner[next] : t->work[1];
     cl_mem third = fill ? t->other[next] : store_find(sim, "force")->mem;
-    TRY(launch_set(kernel, name, why, "Lmmmmmmmmmmmmmmii", launch, t->grid, store_find(sim, "position")->mem, table_radii(sim),
-                   store_find(sim, "id")->mem, t->work[2], sim->where, t->owner[t->now], t->other[t->now], t->slot_offset[t->now], t->slots[t->now],
-                   store_find(sim, field_bonded.name)->mem, first, second, third, room, t->old_wall_base));
-    return launch_run(sim, kernel, name, sim->count, sim->block, why);
+    return table_do(sim, name, sim->count, sim->block, why, "Lmmmmmmmmmmmmmmii", launch, t->grid, store_find(sim, "position")->mem,
+                    table_radii(sim), store_find(sim, "id")->mem, t->work[2], sim->where, t->owner[t->now], t->other[t->now],
+                    t->slot_offset[t->now], t->slots[t->now], store_find(sim, field_bonded.name)->mem, first, second, third, room,
+                    t->old_wall_base);
 }
 
 /* Over all kinds of contacts in all stages, for the largest grains. */

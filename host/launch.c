@@ -183,6 +183,8 @@ static bool has_kernel(const simulation *sim, const char *name)
 {
     if (strcmp(name, "step_loop") == 0)
         return step_loop_wanted(sim);
+    if (strcmp(name, "table_phases") == 0)
+        return sim->live.blocks;
     if (strcmp(name, "particle_synchronise") == 0 || strcmp(name, "pair_catch_up") == 0)
         return live_keeps_half_steps(&sim->live);
     if (strcmp(name, "heat_ahead") == 0)
@@ -233,9 +235,9 @@ status launch_open(simulation *sim, failure *why)
     TRY(open_program(sim, table_constants, table_files, live_table_files(&sim->live, table_files), &sim->table_program, why));
     static const char *const names[] = {"pair_stage",       "pair_probe",      "particle_stage",    "scan_chunks",       "scan_sums",
                                         "scan_write",       "scan_whole",       "table_bin",       "table_order",       "table_order_cells", "table_permute",
-                                        "table_count",    "table_fill",        "table_pad",         "table_widths",
+                                        "table_count",    "table_fill",        "table_pad",         "table_widths", "table_totals",
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",
-                                        "table_last_records", "table_releases", "table_place",
+                                        "table_last_records", "table_releases", "table_place", "table_phases",
                                         "observe_particles", "observe_records", "limit_records",    "limit_particles",   "limit_expected",
                                         "guard_particles",  "guard_records",   "table_count_walls", "table_fill_walls",
                                         "pair_catch_up", "particle_synchronise", "step_loop", "servo_place", "servo_stage", "table_bond_sums", "table_bond_inverse", "table_bond_count", "table_bond_fill",
@@ -363,14 +365,19 @@ static cl_int set_arguments(cl_kernel kernel, cl_uint first, const char *types, 
     return code;
 }
 
+status launch_set_list(cl_kernel kernel, const char *name, failure *why, const char *types, va_list values)
+{
+    TRY_CL(set_arguments(kernel, 0, types, values), name);
+    return STATUS_OK;
+}
+
 status launch_set(cl_kernel kernel, const char *name, failure *why, const char *types, ...)
 {
     va_list values;
     va_start(values, types);
-    cl_int code = set_arguments(kernel, 0, types, values);
+    status result = launch_set_list(kernel, name, why, types, values);
     va_end(values);
-    TRY_CL(code, name);
-    return STATUS_OK;
+    return result;
 }
 
 status launch_set_from(cl_kernel kernel, const char *name, cl_uint first, failure *why, const char *types, ...)

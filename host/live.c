@@ -257,8 +257,12 @@ int live_files(const live_laws *live, const char **files, int max)
         for (int f = 0; l && f < LAW_FILES_MAX && l->more_files[f] && count < max; f++)
             files[count++] = l->more_files[f];
     }
-    for (size_t s = 0; s < sizeof stages / sizeof *stages && count < max; s++)
-        files[count++] = stages[s] ? stages[s] : live->blocks ? "stage/by_blocks.cl" : "stage/by_items.cl";
+    for (size_t s = 0; s < sizeof stages / sizeof *stages; s++) {
+        if (!stages[s] && live->blocks && count < max)
+            files[count++] = "stage/team.cl";
+        if (count < max)
+            files[count++] = stages[s] ? stages[s] : live->blocks ? "stage/by_blocks.cl" : "stage/by_items.cl";
+    }
     if (live_keeps_half_steps(live) && count < max)
         files[count++] = "stage/synchronise.cl";
     if (live->servo && count < max)
@@ -284,10 +288,12 @@ int live_table_files(const live_laws *live, const char **files)
         files[count++] = live->law[slots[s]] ? live->law[slots[s]]->kernel_file : none_file(slots[s]);
     files[count++] = "stage/scan.cl";
     files[count++] = "stage/table.cl";
-    if (live->law[SLOT_WALLS])
-        files[count++] = "stage/table_walls.cl";
-    if (live->law[SLOT_BOND])
-        files[count++] = "stage/table_bonds.cl";
+    files[count++] = live->law[SLOT_WALLS] ? "stage/table_walls.cl" : "none/table_walls.cl";
+    files[count++] = live->law[SLOT_BOND] ? "stage/table_bonds.cl" : "none/table_bonds.cl";
+    if (live->blocks) {
+        files[count++] = "stage/team.cl";
+        files[count++] = "stage/table_phases.cl";
+    }
     return count;
 }
 

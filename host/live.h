@@ -19,8 +19,8 @@ typedef struct live_laws {
 void live_laws_of(const scene *scene, const bed *bed, live_laws *out);
 /* The laws of one stage, from the union: what the stage switches off is gone. */
 void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, live_laws *out);
-/* Files of the program that builds contact tables; it is the same for all laws, so that a new scene seldom waits for it. At most 6. */
-#define LIVE_TABLE_FILES 7
+/* Files of the program that builds contact tables; it is the same for all laws, so that a new scene seldom waits for it. */
+#define LIVE_TABLE_FILES 9
 int live_table_files(const live_laws *live, const char **files);
 void live_table_constants(const live_laws *live, char *text, size_t size);
 /* Files of the program of the stages in order; returns their number (at most `max`). */

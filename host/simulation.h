@@ -12,6 +12,8 @@
 
 #include <clast/shared.h>
 
+#include <stdarg.h>
+
 #define SIMULATION_FIELDS_MAX 64
 #define SIMULATION_KERNELS_MAX 96
 #define BATCH_STEPS_MAX 1024
@@ -28,6 +30,15 @@ typedef struct kernel_slot {
     const char *name;
     cl_kernel kernel;
 } kernel_slot;
+
+/* What is to be done for a table, on its way to the device; see table_phases.c. */
+typedef struct table_list {
+    clast_table_list *rows;
+    clast_launch launch;
+    cl_mem memory[CLAST_TABLE_MEMORIES], device;
+    int memories, count;
+    bool launched; /* some phase has taken `launch` */
+} table_list;
 
 /* The contact table: packed records, slots of every grain, and the arrays that build them. Two generations stand side by side while
  * histories are carried over. */
@@ -47,8 +58,9 @@ typedef struct contact_table {
     int64_t record_stride;
     cl_mem match;
     cl_mem work[5]; /* per particle, 32 bits */
-    cl_mem cell_count, cell_start, sums, grid, width;
+    cl_mem cell_count, cell_start, sums, grid, width, totals;
     clast_grid grid_host;
+    table_list list;
     double skin;
     double radius_min, radius_max; /* at the reference temperature, where radii change */
     double growth;                 /* largest since, m */
@@ -274,8 +286,6 @@ uint64_t field_bytes(const simulation *sim, const field *field);
 status store_write(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, const void *data, failure *why);
 status store_read(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, void *data, failure *why);
 status store_fill(simulation *sim, cl_mem mem, uint64_t bytes, failure *why);
-/* As store_read, but `data`, which must outlive the queue, is there only after the next store_read. */
-status store_ask(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, void *data, failure *why);
 /* Zeroes `count` 32-bit words from word `first` on. */
 status store_clear_ints(simulation *sim, cl_mem mem, int64_t first, int64_t count, failure *why);
 status store_copy(simulation *sim, cl_mem from, cl_mem to, uint64_t from_offset, uint64_t to_offset, uint64_t bytes, failure *why);
@@ -301,6 +311,7 @@ status launch_run(simulation *sim, cl_kernel kernel, const char *name, int64_t i
 /* Sets arguments first.. in order: 'm' cl_mem, 'i' int, 'l' clast_i64, 'f' double as float,
  * 'd' double, 'L' const clast_launch *. */
 status launch_set(cl_kernel kernel, const char *name, failure *why, const char *types, ...);
+status launch_set_list(cl_kernel kernel, const char *name, failure *why, const char *types, va_list values);
 /* The same from argument `first` on. */
 status launch_set_from(cl_kernel kernel, const char *name, cl_uint first, failure *why, const char *types, ...);
 
@@ -316,6 +327,9 @@ bool step_loop_wanted(const simulation *sim);
 bool step_loop_now(const simulation *sim);
 /* Members of the team for the table of the moment; 1: none. */
 int step_loop_members(const simulation *sim);
+/* Who goes through the phases of a table now, and with how many members where it is a team. */
+loop_manner step_loop_table_manner(const simulation *sim);
+int step_loop_team(const simulation *sim);
 /* Work-items of a work-group. */
 int step_loop_items(const simulation *sim);
 /* After every table. */
@@ -355,6 +369,17 @@ status table_travel(simulation *sim, double *out, failure *why);
 /* The radii that tables go by. */
 cl_mem table_radii(simulation *sim);
 uint64_t table_bytes(const simulation *sim);
+
+/* table_phases.c: what is done for a table, in order */
+/* As launch_set and launch_run, at once or with what else is due; so are the two below. */
+status table_do(simulation *sim, const char *name, int64_t items, int64_t group, failure *why, const char *types, ...);
+status table_do_fill(simulation *sim, cl_mem memory, uint64_t bytes, cl_int value, failure *why);
+/* The cells, to be told first. */
+status table_give_grid(simulation *sim, const clast_grid *grid, failure *why);
+status table_do_copy(simulation *sim, cl_mem from, cl_mem to, uint64_t bytes, failure *why);
+/* Before the queue is given anything else, and before a buffer is released: what is due. */
+status table_flush(simulation *sim, failure *why);
+void table_list_free(simulation *sim);
 
 /* limit.c */
 status limit_find(simulation *sim, step_limit *out, failure *why);

@@ -73,12 +73,30 @@ static loop_manner fixed_manner(const simulation *sim)
     return sim->table.record_count <= records_alone(sim) ? LOOP_ALONE : LOOP_MANNERS;
 }
 
-int step_loop_members(const simulation *sim)
+static bool is_small(const simulation *sim)
 {
-    if (!step_loop_now(sim) || fixed_manner(sim) == LOOP_ALONE)
-        return 1;
+    return sim->table.record_count < SMALL_BED_RECORDS;
+}
+
+int step_loop_team(const simulation *sim)
+{
     int units = (int)sim->device->info.compute_units;
     return units < CLAST_TEAM_MAX ? units : CLAST_TEAM_MAX;
+}
+
+int step_loop_members(const simulation *sim)
+{
+    return step_loop_now(sim) && fixed_manner(sim) != LOOP_ALONE ? step_loop_team(sim) : 1;
+}
+
+/* As the last batch, whose members have the grains in their caches; but what goes alone is small, and what has a launch for each phase is large. */
+loop_manner step_loop_table_manner(const simulation *sim)
+{
+    bool built = sim->table.built, small = built ? is_small(sim) : sim->id_count <= records_alone(sim);
+    loop_manner fixed = built ? fixed_manner(sim) : LOOP_PHASES, manner = fixed == LOOP_MANNERS ? sim->loop.manner : fixed;
+    if (manner == LOOP_TEAM || (manner == LOOP_PHASES && sim->scene->table.step_form == STEP_PHASES))
+        return manner;
+    return small ? LOOP_ALONE : LOOP_PHASES;
 }
 
 /* ---- the fastest manner ---- */
@@ -101,11 +119,6 @@ static loop_manner fastest(const simulation *sim)
         if (sim->loop.pace[m] > 0.0 && cost(sim, m) < cost(sim, best))
             best = m;
     return best;
-}
-
-static bool is_small(const simulation *sim)
-{
-    return sim->table.record_count < SMALL_BED_RECORDS;
 }
 
 /* The first batch compiles, and is not timed. */

@@ -25,13 +25,14 @@
 
 /* What a plan is made from; arrays of the host. */
 typedef struct planning {
-    int chunk, chunks;  /* records in one, and how many */
+    int chunk, chunks; /* records in one, and how many */
     int streams;
     int blocks, together, groups;
-    int32_t *first;     /* of every block: its first record of a pair */
-    int32_t *last;      /* of every block: its last record of a pair; then the chunk after which it may go, `chunks`: after all streams */
-    int32_t *release;   /* of every work-group of records: the chunk after which its forces have been gathered; then the same of every chunk */
-    int32_t *place;     /* of every chunk, in chunks */
+    int32_t *first; /* of every block: its first record of a pair */
+    int32_t *last;  /* of every block: its last record of a pair; then the chunk after which it may go, `chunks`: after all streams */
+    int32_t
+        *release;   /* of every work-group of records: the chunk after which its forces have been gathered; then the same of every chunk */
+    int32_t *place; /* of every chunk, in chunks */
     int places;
 } planning;
 
@@ -114,9 +115,9 @@ static status plan_whole(simulation *sim, failure *why)
 static status find_last_records(simulation *sim, planning *p, failure *why)
 {
     contact_table *t = &sim->table;
-    cl_kernel kernel = launch_kernel(sim, "table_last_records");
-    TRY(launch_set(kernel, "table_last_records", why, "mmmii", t->slot_offset[t->now], t->slots[t->now], t->work[0], t->wall_base, p->blocks));
-    TRY(launch_run(sim, kernel, "table_last_records", p->blocks, sim->block, why));
+    TRY(table_do(sim, "table_last_records", p->blocks, sim->block, why, "mmmii", t->slot_offset[t->now], t->slots[t->now], t->work[0],
+                 t->wall_base, p->blocks));
+    TRY(table_flush(sim, why));
     TRY(store_read(sim, t->work[0], 0, 8 * (uint64_t)p->blocks, p->first, why));
     for (int b = 0; b < p->blocks; b++)
         p->last[b] = p->first[2 * b + 1];
@@ -144,10 +145,10 @@ static status find_releases(simulation *sim, planning *p, failure *why)
 {
     contact_table *t = &sim->table;
     int record_groups = t->wall_base / sim->block, per_chunk = p->chunk / sim->block;
-    cl_kernel kernel = launch_kernel(sim, "table_releases");
     TRY(store_write(sim, t->work[0], 0, 4 * (uint64_t)p->blocks, p->last, why));
-    TRY(launch_set(kernel, "table_releases", why, "mmmmii", t->owner[t->now], t->other[t->now], t->work[0], t->match, t->pair_count, record_groups));
-    TRY(launch_run(sim, kernel, "table_releases", record_groups, sim->block, why));
+    TRY(table_do(sim, "table_releases", record_groups, sim->block, why, "mmmmii", t->owner[t->now], t->other[t->now], t->work[0], t->match,
+                 t->pair_count, record_groups));
+    TRY(table_flush(sim, why));
     TRY(store_read(sim, t->match, 0, 4 * (uint64_t)record_groups, p->release, why));
     for (int c = 0; c < p->chunks; c++) {
         int last = c;
@@ -230,7 +231,6 @@ static bool may_share_places(const simulation *sim)
 static status place_slots(simulation *sim, const planning *p, int wall_shift, failure *why)
 {
     contact_table *t = &sim->table;
-    cl_kernel kernel = launch_kernel(sim, "table_place");
     int count = t->slot_count;
     if (t->placed_held < t->slot_capacity) {
         store_release(sim, &t->placed, 4 * (uint64_t)t->placed_held);
@@ -238,8 +238,8 @@ static status place_slots(simulation *sim, const planning *p, int wall_shift, fa
         t->placed_held = t->slot_capacity;
     }
     TRY(store_write(sim, t->work[0], 0, 4 * (uint64_t)p->chunks, p->place, why));
-    TRY(launch_set(kernel, "table_place", why, "mmmiiii", t->slots[t->now], t->work[0], t->placed, count, t->wall_base, p->chunk, wall_shift));
-    return launch_run(sim, kernel, "table_place", count, sim->block, why);
+    return table_do(sim, "table_place", count, sim->block, why, "mmmiiii", t->slots[t->now], t->work[0], t->placed, count, t->wall_base,
+                    p->chunk, wall_shift);
 }
 
 static status plan_chunks(simulation *sim, planning *p, failure *why)
@@ -312,7 +312,8 @@ void step_plan_free(step_plan *plan)
 
 /* ---- a step ---- */
 
-static status enqueue_piece(const simulation *sim, cl_command_queue queue, const clast_piece *piece, clast_launch *launch, cl_event *event, failure *why)
+static status enqueue_piece(const simulation *sim, cl_command_queue queue, const clast_piece *piece, clast_launch *launch, cl_event *event,
+                            failure *why)
 {
     const char *name = piece->pairs ? "pair_stage" : "particle_stage";
     cl_kernel kernel = launch_kernel(sim, name);

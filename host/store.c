@@ -146,12 +146,6 @@ status store_read(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, 
     return STATUS_OK;
 }
 
-status store_ask(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, void *data, failure *why)
-{
-    TRY_CL(clEnqueueReadBuffer(sim->device->queue, mem, CL_FALSE, offset, bytes, data, 0, NULL, NULL), "reading from the device");
-    return STATUS_OK;
-}
-
 status store_put(simulation *sim, cl_mem mem, field_type type, int64_t first, int64_t count, const double *values, failure *why)
 {
     uint64_t item = store_item(sim, type), offset = item * (uint64_t)first, bytes = item * (uint64_t)count;

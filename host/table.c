@@ -34,6 +34,7 @@ status table_create(simulation *sim, failure *why)
         TRY(store_buffer(sim, &t->slot_offset[g], 4 * (uint64_t)(blocks + 1), "the contact table", why));
         TRY(store_fill(sim, t->slot_offset[g], 4 * (uint64_t)(blocks + 1), why));
     }
+    TRY(store_buffer(sim, &t->totals, sizeof t->found, "the contact table", why));
     TRY(store_buffer(sim, &t->width, 4 * (uint64_t)(blocks + 1), "the contact table", why));
     return store_buffer(sim, &t->grid, sizeof(clast_grid), "the contact table", why);
 }
@@ -47,11 +48,13 @@ static void release_pair(simulation *sim, cl_mem *mem, uint64_t bytes)
 void table_free(simulation *sim)
 {
     contact_table *t = &sim->table;
+    table_list_free(sim);
     release_pair(sim, t->owner, 0);
     release_pair(sim, t->other, 0);
     release_pair(sim, t->slots, 0);
     release_pair(sim, t->slot_offset, 0);
-    cl_mem *const rest[] = {&t->match, &t->placed, &t->work[0], &t->work[1], &t->work[2], &t->work[3], &t->work[4], &t->cell_count, &t->cell_start, &t->sums, &t->grid, &t->width};
+    cl_mem *const rest[] = {&t->match,      &t->placed,     &t->work[0], &t->work[1], &t->work[2], &t->work[3], &t->work[4],
+                            &t->cell_count, &t->cell_start, &t->sums,    &t->grid,    &t->width,   &t->totals};
     for (size_t m = 0; m < sizeof rest / sizeof *rest; m++)
         store_release(sim, rest[m], 0);
 }
@@ -95,7 +98,8 @@ status table_growth(simulation *sim, double *growth, failure *why)
     if (!sim->all.law[SLOT_RADIUS] || n == 0)
         return STATUS_OK;
     double *radius = malloc(2 * sizeof *radius * n);
-    status result = radius ? store_get_grains(sim, store_find(sim, "radius"), sim->count, radius, why) : fail(why, STATUS_ERROR, "out of memory");
+    status result = radius ? store_get_grains(sim, store_find(sim, "radius"), sim->count, radius, why)
+                           : fail(why, STATUS_ERROR, "out of memory");
     if (result == STATUS_OK)
         result = store_get_grains(sim, store_find(sim, field_reference_radius.name), sim->count, radius + n, why);
     for (size_t i = 0; i < n && result == STATUS_OK; i++)
@@ -158,17 +162,11 @@ static status scan(simulation *sim, cl_mem values, cl_mem result, int64_t count,
     contact_table *t = &sim->table;
     int chunks = (int)((count + SCAN_CHUNK - 1) / SCAN_CHUNK);
     if (sim->device->info.cpu && count <= SCAN_WHOLE) {
-        cl_kernel whole = launch_kernel(sim, "scan_whole");
-        TRY(launch_set(whole, "scan_whole", why, "mmi", values, result, (cl_int)count));
-        return launch_run(sim, whole, "scan_whole", 1, 1, why);
+        return table_do(sim, "scan_whole", 1, 1, why, "mmi", values, result, (cl_int)count);
     }
-    cl_kernel a = launch_kernel(sim, "scan_chunks"), b = launch_kernel(sim, "scan_sums"), c = launch_kernel(sim, "scan_write");
-    TRY(launch_set(a, "scan_chunks", why, "mmi", values, t->sums, (cl_int)count));
-    TRY(launch_run(sim, a, "scan_chunks", chunks, 1, why));
-    TRY(launch_set(b, "scan_sums", why, "mi", t->sums, chunks));
-    TRY(launch_run(sim, b, "scan_sums", 1, 1, why));
-    TRY(launch_set(c, "scan_write", why, "mmmi", values, t->sums, result, (cl_int)count));
-    return launch_run(sim, c, "scan_write", chunks, 1, why);
+    TRY(table_do(sim, "scan_chunks", chunks, 1, why, "mmi", values, t->sums, (cl_int)count));
+    TRY(table_do(sim, "scan_sums", 1, 1, why, "mi", t->sums, chunks));
+    return table_do(sim, "scan_write", chunks, 1, why, "mmmi", values, t->sums, result, (cl_int)count);
 }
 
 /* order[new] = old in work C; sim->count falls by what left the domain. */
@@ -177,17 +175,16 @@ static status sort_grains(simulation *sim, const clast_launch *launch, failure *
     contact_table *t = &sim->table;
     int cells = t->grid_host.cell_count;
     cl_mem position = store_find(sim, "position")->mem, radius = table_radii(sim), id = store_find(sim, "id")->mem;
-    cl_kernel bin = launch_kernel(sim, "table_bin"), order = launch_kernel(sim, "table_order"), inside = launch_kernel(sim, "table_order_cells");
-    TRY(store_fill(sim, t->cell_count, 4 * (uint64_t)(cells + 1), why));
-    TRY(launch_set(bin, "table_bin", why, "Lmmmmmm", launch, t->grid, position, radius, t->work[WORK_A], t->work[WORK_B], t->cell_count));
-    TRY(launch_run(sim, bin, "table_bin", sim->count, sim->block, why));
+    TRY(table_do_fill(sim, t->cell_count, 4 * (uint64_t)(cells + 1), 0, why));
+    TRY(table_do(sim, "table_bin", sim->count, sim->block, why, "Lmmmmmm", launch, t->grid, position, radius, t->work[WORK_A],
+                 t->work[WORK_B], t->cell_count));
     TRY(scan(sim, t->cell_count, t->cell_start, cells + 1, why));
-    TRY(launch_set(order, "table_order", why, "Lmmmm", launch, t->work[WORK_A], t->work[WORK_B], t->cell_start, t->work[WORK_C]));
-    TRY(launch_run(sim, order, "table_order", sim->count, sim->block, why));
-    TRY(launch_set(inside, "table_order_cells", why, "mmmi", t->cell_start, id, t->work[WORK_C], cells + 1));
-    TRY(launch_run(sim, inside, "table_order_cells", cells + 1, sim->block, why));
+    TRY(table_do(sim, "table_order", sim->count, sim->block, why, "Lmmmm", launch, t->work[WORK_A], t->work[WORK_B], t->cell_start,
+                 t->work[WORK_C]));
+    TRY(table_do(sim, "table_order_cells", cells + 1, sim->block, why, "mmmi", t->cell_start, id, t->work[WORK_C], cells + 1));
     if (t->grid_host.drop_outside) {
         cl_uint kept;
+        TRY(table_flush(sim, why));
         TRY(store_read(sim, t->cell_start, 4 * (uint64_t)cells, sizeof kept, &kept, why));
         TRY(simulation_count_leavers(sim, kept, why));
     }
@@ -198,14 +195,14 @@ static status sort_grains(simulation *sim, const clast_launch *launch, failure *
  * large as positions changes places with them instead of being copied back. */
 static status permute_field(simulation *sim, const clast_launch *launch, stored_field *stored, failure *why)
 {
-    cl_kernel kernel = launch_kernel(sim, "table_permute");
-    uint64_t bytes = store_item(sim, stored->field->type) * (uint64_t)stored->field->components, like_position = field_bytes(sim, &field_position);
+    uint64_t bytes = store_item(sim, stored->field->type) * (uint64_t)stored->field->components,
+             like_position = field_bytes(sim, &field_position);
     bool wide = field_bytes(sim, stored->field) > like_position, alike = field_bytes(sim, stored->field) == like_position;
     cl_mem from = stored->mem, scratch = wide ? sim->scratch4 : sim->built_position;
-    TRY(launch_set(kernel, "table_permute", why, "Lmmmi", launch, sim->table.work[WORK_C], from, scratch, (cl_int)(bytes / 4)));
-    TRY(launch_run(sim, kernel, "table_permute", sim->count, sim->block, why));
+    TRY(table_do(sim, "table_permute", sim->count, sim->block, why, "Lmmmi", launch, sim->table.work[WORK_C], from, scratch,
+                 (cl_int)(bytes / 4)));
     if (!alike)
-        return store_copy(sim, scratch, from, 0, 0, bytes * (uint64_t)sim->count, why);
+        return table_do_copy(sim, scratch, from, bytes * (uint64_t)sim->count, why);
     stored->mem = scratch;
     sim->built_position = from;
     return STATUS_OK;
@@ -229,35 +226,39 @@ static int kept_partners(const simulation *sim)
     return room > 32 ? 32 : (int)room;
 }
 
+static bool has_walls(const simulation *sim)
+{
+    return sim->live.law[SLOT_WALLS] != NULL;
+}
+
 /* Owned pairs into work A, their starts into D, wall records' starts into E, slots of every grain into B, and where those of a block begin. What
  * the host needs to know of them is read at once: to wait costs more than many a kernel. */
 static status count_records(simulation *sim, const clast_launch *launch, failure *why)
 {
     contact_table *t = &sim->table;
     int64_t blocks = sim->stride / sim->block;
-    cl_mem position = store_find(sim, "position")->mem, radius = table_radii(sim), id = store_find(sim, "id")->mem, offset = t->slot_offset[1 - t->now];
-    cl_kernel count = launch_kernel(sim, "table_count"), walls = launch_kernel(sim, "table_count_walls"), widths = launch_kernel(sim, "table_widths");
-    TRY(store_fill(sim, t->work[WORK_A], 4 * (uint64_t)sim->stride, why));
-    TRY(store_fill(sim, t->work[WORK_B], 4 * (uint64_t)sim->stride, why));
-    TRY(launch_set(count, "table_count", why, "Lmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_A], t->work[WORK_B],
-                   store_find(sim, "force")->mem, kept_partners(sim)));
-    TRY(launch_run(sim, count, "table_count", sim->count, sim->block, why));
+    cl_mem position = store_find(sim, "position")->mem, radius = table_radii(sim), id = store_find(sim, "id")->mem,
+           offset = t->slot_offset[1 - t->now];
+    TRY(table_do_fill(sim, t->work[WORK_A], 4 * (uint64_t)sim->stride, 0, why));
+    TRY(table_do_fill(sim, t->work[WORK_B], 4 * (uint64_t)sim->stride, 0, why));
+    TRY(table_do(sim, "table_count", sim->count, sim->block, why, "Lmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id,
+                 t->work[WORK_A], t->work[WORK_B], store_find(sim, "force")->mem, kept_partners(sim)));
     TRY(bonds_keep(sim, launch, kept_partners(sim), false, why));
     TRY(scan(sim, t->work[WORK_A], t->work[WORK_D], sim->stride, why));
-    if (walls) {
-        TRY(launch_set(walls, "table_count_walls", why, "Lmmmmmm", launch, t->grid, position, radius, sim->faces, t->work[WORK_A], t->work[WORK_B]));
-        TRY(launch_run(sim, walls, "table_count_walls", sim->stride, sim->block, why));
+    if (has_walls(sim)) {
+        TRY(table_do(sim, "table_count_walls", sim->stride, sim->block, why, "Lmmmmmm", launch, t->grid, position, radius, sim->faces,
+                     t->work[WORK_A], t->work[WORK_B]));
         TRY(scan(sim, t->work[WORK_A], t->work[WORK_E], sim->stride, why));
     }
-    TRY(launch_set(widths, "table_widths", why, "mm", t->work[WORK_B], t->width));
-    TRY(launch_run(sim, widths, "table_widths", blocks, 1, why));
+    TRY(table_do(sim, "table_widths", blocks, 1, why, "mm", t->work[WORK_B], t->width));
     TRY(scan(sim, t->width, offset, blocks, why));
-    TRY(store_ask(sim, t->work[WORK_D], 4 * (uint64_t)sim->stride, sizeof(cl_uint), &t->found[0], why));
-    if (walls)
-        TRY(store_ask(sim, t->work[WORK_E], 4 * (uint64_t)sim->stride, sizeof(cl_uint), &t->found[1], why));
-    TRY(store_read(sim, offset, 4 * (uint64_t)blocks, sizeof(cl_uint), &t->found[2], why));
+    cl_mem walls_start = t->work[has_walls(sim) ? WORK_E : WORK_D];
+    TRY(table_do(sim, "table_totals", 1, 1, why, "mmmmii", t->work[WORK_D], walls_start, offset, t->totals, (cl_int)sim->stride,
+                 (cl_int)blocks));
+    TRY(table_flush(sim, why));
+    TRY(store_read(sim, t->totals, 0, sizeof t->found, t->found, why));
     t->pair_count = (int)t->found[0];
-    t->wall_record_count = walls ? (int)t->found[1] : 0;
+    t->wall_record_count = has_walls(sim) ? (int)t->found[1] : 0;
     t->slot_count = (int)t->found[2];
     t->wall_base = (int)round_up(t->pair_count, sim->block);
     t->record_count = (int)round_up(t->wall_base + t->wall_record_count, sim->block);
@@ -303,19 +304,16 @@ static status fill_records(simulation *sim, const clast_launch *launch, int room
     contact_table *t = &sim->table;
     int next = 1 - t->now;
     cl_mem position = store_find(sim, "position")->mem, radius = table_radii(sim), id = store_find(sim, "id")->mem;
-    cl_kernel fill = launch_kernel(sim, "table_fill"), walls = launch_kernel(sim, "table_fill_walls"), pad = launch_kernel(sim, "table_pad");
-    TRY(launch_set(fill, "table_fill", why, "Lmmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id, t->work[WORK_D], t->owner[next],
-                   t->other[next], store_find(sim, "force")->mem, room));
-    TRY(launch_run(sim, fill, "table_fill", sim->count, sim->block, why));
+    TRY(table_do(sim, "table_fill", sim->count, sim->block, why, "Lmmmmmmmmmi", launch, t->grid, t->cell_start, position, radius, id,
+                 t->work[WORK_D], t->owner[next], t->other[next], store_find(sim, "force")->mem, room));
     TRY(bonds_keep(sim, launch, room, true, why));
     int end = t->wall_base + t->wall_record_count;
-    if (walls) {
-        TRY(launch_set(walls, "table_fill_walls", why, "Lmmmmmmmi", launch, t->grid, position, radius, sim->faces, t->work[WORK_E], t->owner[next],
-                       t->other[next], t->wall_base));
-        TRY(launch_run(sim, walls, "table_fill_walls", sim->count, sim->block, why));
+    if (has_walls(sim)) {
+        TRY(table_do(sim, "table_fill_walls", sim->count, sim->block, why, "Lmmmmmmmi", launch, t->grid, position, radius, sim->faces,
+                     t->work[WORK_E], t->owner[next], t->other[next], t->wall_base));
     }
-    TRY(launch_set(pad, "table_pad", why, "mmiiii", t->owner[next], t->other[next], t->pair_count, t->wall_base, end, t->record_count));
-    return launch_run(sim, pad, "table_pad", t->wall_base - t->pair_count + t->record_count - end, sim->block, why);
+    return table_do(sim, "table_pad", t->wall_base - t->pair_count + t->record_count - end, sim->block, why, "mmiiii", t->owner[next],
+                    t->other[next], t->pair_count, t->wall_base, end, t->record_count);
 }
 
 static status fill_slots(simulation *sim, const clast_launch *launch, failure *why)
@@ -323,34 +321,31 @@ static status fill_slots(simulation *sim, const clast_launch *launch, failure *w
     contact_table *t = &sim->table;
     int next = 1 - t->now, end = t->wall_base + t->wall_record_count;
     cl_mem id = store_find(sim, "id")->mem;
-    cl_kernel slots = launch_kernel(sim, "table_slots"), sort = launch_kernel(sim, "table_sort_slots");
     TRY(fit_slots(sim, t->slot_count, why));
-    TRY(store_fill(sim, t->slots[next], 4 * (uint64_t)t->slot_count, why));
-    TRY(store_fill(sim, t->work[WORK_A], 4 * (uint64_t)sim->stride, why));
-    TRY(launch_set(slots, "table_slots", why, "mmmmmiii", t->owner[next], t->other[next], t->slot_offset[next], t->work[WORK_A], t->slots[next],
-                   t->pair_count, t->wall_base, end));
-    TRY(launch_run(sim, slots, "table_slots", end, sim->block, why));
-    TRY(launch_set(sort, "table_sort_slots", why, "Lmmmmmmi", launch, t->owner[next], t->other[next], id, t->slot_offset[next], t->work[WORK_B],
-                   t->slots[next], t->wall_base));
-    return launch_run(sim, sort, "table_sort_slots", sim->count, sim->block, why);
+    TRY(table_do_fill(sim, t->slots[next], 4 * (uint64_t)t->slot_count, 0, why));
+    TRY(table_do_fill(sim, t->work[WORK_A], 4 * (uint64_t)sim->stride, 0, why));
+    TRY(table_do(sim, "table_slots", end, sim->block, why, "mmmmmiii", t->owner[next], t->other[next], t->slot_offset[next],
+                 t->work[WORK_A], t->slots[next], t->pair_count, t->wall_base, end));
+    return table_do(sim, "table_sort_slots", sim->count, sim->block, why, "Lmmmmmmi", launch, t->owner[next], t->other[next], id,
+                    t->slot_offset[next], t->work[WORK_B], t->slots[next], t->wall_base);
 }
 
 static status carry_history(simulation *sim, const stored_field *stored, cl_mem from, int64_t old_stride, failure *why)
 {
     contact_table *t = &sim->table;
-    cl_kernel carry = launch_kernel(sim, "table_carry");
     int components = stored->field->components;
-    TRY(launch_set(carry, "table_carry", why, "mmmlliii", t->match, from, stored->mem, (clast_i64)old_stride, (clast_i64)t->record_stride, t->record_count,
-                   components, components > 1));
-    return launch_run(sim, carry, "table_carry", t->record_count, sim->block, why);
+    return table_do(sim, "table_carry", t->record_count, sim->block, why, "mmmlliii", t->match, from, stored->mem, (clast_i64)old_stride,
+                    (clast_i64)t->record_stride, t->record_count, components, components > 1);
 }
 
-/* Every history of the old records into the new ones. Where nothing grew the force array, of three components as a history has at most, holds
- * the old one meanwhile. */
+/* Every history of the old records into the new ones. Where nothing grew it changes places with the force array, which nobody reads while a table is
+ * built, or where it is smaller is copied there first: a history has three components at most. */
 static status carry_histories(simulation *sim, int64_t old_stride, failure *why)
 {
     contact_table *t = &sim->table;
     bool grown = old_stride != t->record_stride;
+    if (grown)
+        TRY(table_flush(sim, why));
     for (int f = 0; f < sim->field_count; f++) {
         stored_field *stored = &sim->field[f];
         const field *field = stored->field;
@@ -363,11 +358,21 @@ static status carry_histories(simulation *sim, int64_t old_stride, failure *why)
                 TRY(grow(sim, &stored->mem, old_bytes, field_bytes(sim, field), why));
             continue;
         }
-        cl_mem from = grown ? old : store_find(sim, "force")->mem;
-        status result = grown ? store_buffer(sim, &stored->mem, field_bytes(sim, field), field->name, why)
-                              : store_copy(sim, old, from, 0, 0, old_bytes, why);
+        stored_field *force = store_find(sim, "force");
+        bool alike = !grown && old_bytes == field_bytes(sim, &field_force);
+        cl_mem from = grown || alike ? old : force->mem;
+        status result = STATUS_OK;
+        if (grown)
+            result = store_buffer(sim, &stored->mem, field_bytes(sim, field), field->name, why);
+        else if (alike) {
+            stored->mem = force->mem;
+            force->mem = old;
+        } else
+            result = table_do_copy(sim, old, from, old_bytes, why);
         if (result == STATUS_OK)
             result = carry_history(sim, stored, from, old_stride, why);
+        if (result == STATUS_OK && grown)
+            result = table_flush(sim, why);
         if (grown)
             store_release(sim, &old, old_bytes);
         TRY(result);
@@ -380,12 +385,10 @@ static status match_records(simulation *sim, int old_wall_base, failure *why)
     contact_table *t = &sim->table;
     int next = 1 - t->now;
     if (!t->built)
-        return store_fill(sim, t->match, 4 * (uint64_t)t->record_count, why);
-    cl_kernel match = launch_kernel(sim, "table_match");
-    TRY(launch_set(match, "table_match", why, "mmmmmmmmiiiii", t->owner[next], t->other[next], t->work[WORK_C], t->owner[t->now], t->other[t->now],
-                   t->slot_offset[t->now], t->slots[t->now], t->match, t->pair_count, t->wall_base, t->wall_base + t->wall_record_count, t->record_count,
-                   old_wall_base));
-    return launch_run(sim, match, "table_match", t->record_count, sim->block, why);
+        return table_do_fill(sim, t->match, 4 * (uint64_t)t->record_count, 0, why);
+    return table_do(sim, "table_match", t->record_count, sim->block, why, "mmmmmmmmiiiii", t->owner[next], t->other[next], t->work[WORK_C],
+                    t->owner[t->now], t->other[t->now], t->slot_offset[t->now], t->slots[t->now], t->match, t->pair_count, t->wall_base,
+                    t->wall_base + t->wall_record_count, t->record_count, old_wall_base);
 }
 
 /* The generation left behind is brought to the size of the other one once it is free. */
@@ -409,12 +412,13 @@ static status finish(simulation *sim, failure *why)
     sim->rebuild_step = sim->step;
     servo_note_table(sim);
     t->skin_look = FIRST_SKIN_LOOK;
-    TRY(store_copy(sim, store_find(sim, "position")->mem, sim->built_position, 0, 0, field_bytes(sim, &field_position), why));
+    TRY(table_do_copy(sim, store_find(sim, "position")->mem, sim->built_position, field_bytes(sim, &field_position), why));
     stored_field *built = store_find(sim, field_built_radius.name);
     if (built)
-        TRY(store_copy(sim, store_find(sim, "radius")->mem, built->mem, 0, 0, field_bytes(sim, built->field), why));
-    TRY(simulation_choose_drift(sim, why));
+        TRY(table_do_copy(sim, store_find(sim, "radius")->mem, built->mem, field_bytes(sim, built->field), why));
     TRY(step_plan_make(sim, why));
+    TRY(table_flush(sim, why));
+    TRY(simulation_choose_drift(sim, why));
     return launch_bind_stages(sim, why);
 }
 
@@ -431,7 +435,7 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
     clast_grid grid = t->grid_host;
     if (sim->mixed)
         precision_split_grid(&grid, sim->origin);
-    TRY(store_write(sim, t->grid, 0, sizeof grid, &grid, why));
+    TRY(table_give_grid(sim, &grid, why));
     clast_launch launch = launch_values(sim);
     TRY(sort_grains(sim, &launch, why));
     launch.particle_count = (clast_i32)sim->count;
@@ -464,7 +468,8 @@ status table_travel(simulation *sim, double *out, failure *why)
         launch.drift[c] = sim->drift_velocity[c] * (sim->time - sim->built_time);
     status result = observe_partial(sim, chunks + 1, why);
     if (result == STATUS_OK)
-        result = launch_set(kernel, "table_travel", why, "Lmmm", &launch, store_find(sim, "position")->mem, sim->built_position, sim->partial);
+        result = launch_set(kernel, "table_travel", why, "Lmmm", &launch, store_find(sim, "position")->mem, sim->built_position,
+                            sim->partial);
     if (result == STATUS_OK)
         result = launch_run(sim, kernel, "table_travel", chunks, 1, why);
     if (result == STATUS_OK)
@@ -479,5 +484,6 @@ status table_travel(simulation *sim, double *out, failure *why)
 uint64_t table_bytes(const simulation *sim)
 {
     const contact_table *t = &sim->table;
-    return 4 * (uint64_t)(5 * (sim->stride + 1) + 5 * t->record_capacity + t->slots_held[0] + t->slots_held[1] + t->placed_held + 2 * t->cell_capacity);
+    return 4 * (uint64_t)(5 * (sim->stride + 1) + 5 * t->record_capacity + t->slots_held[0] + t->slots_held[1] + t->placed_held +
+                          2 * t->cell_capacity);
 }

@@ -254,4 +254,41 @@ typedef struct clast_grid {
     clast_i32 spare;
 } clast_grid;
 
+/* What builds a table, by the names of the kernels that do one of it each; the first two stand for what a queue does by itself. On a CPU a list of
+ * them goes in one launch (kernels/stage/table_phases.cl). */
+#define CLAST_TABLE_KERNELS(X)                                                                                                                       \
+    X(table_set)                                                                                                                                     \
+    X(table_copy)                                                                                                                                    \
+    X(scan_whole) X(scan_chunks) X(scan_sums) X(scan_write) X(table_bin) X(table_order) X(table_order_cells) X(table_permute) X(table_count)         \
+    X(table_count_walls) X(table_fill) X(table_fill_walls) X(table_pad) X(table_widths) X(table_totals) X(table_slots) X(table_sort_slots) X(table_match) X(table_carry) \
+    X(table_last_records) X(table_releases) X(table_place) X(table_bond_inverse) X(table_bond_count) X(table_bond_fill)
+#define CLAST_TABLE_KIND(name) CLAST_KIND_##name,
+enum clast_table_kind { CLAST_TABLE_KERNELS(CLAST_TABLE_KIND) CLAST_TABLE_KINDS };
+
+#define CLAST_TABLE_PHASES_MAX 96   /* in a list */
+#define CLAST_TABLE_MEMORIES 48     /* buffers of a list */
+#define CLAST_TABLE_ARGUMENTS 14    /* buffers of a phase */
+#define CLAST_TABLE_NUMBERS 5
+#define CLAST_TABLE_EACH_NUMBER(X) X(0) X(1) X(2) X(3) X(4)
+#define CLAST_TABLE_EACH_ARGUMENT(X) X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8) X(9) X(10) X(11) X(12) X(13)
+#define CLAST_TABLE_EACH_MEMORY(X)                                                                                                       \
+    CLAST_TABLE_EACH_ARGUMENT(X)                                                                                                         \
+    X(14) X(15) X(16) X(17) X(18) X(19) X(20) X(21) X(22) X(23) X(24) X(25) X(26) X(27) X(28) X(29) X(30) X(31) X(32) X(33) X(34) X(35)   \
+    X(36) X(37) X(38) X(39) X(40) X(41) X(42) X(43) X(44) X(45) X(46) X(47)
+
+/* A phase: its work-items, so many to a unit of a team, and the arguments of the kernel of that name, in their order: which of the list's buffers,
+ * and numbers. */
+typedef struct clast_table_phase {
+    clast_i64 number[CLAST_TABLE_NUMBERS];
+    clast_i32 kind, items, unit_items;
+    clast_i32 memory[CLAST_TABLE_ARGUMENTS];
+    clast_i32 spare;
+} clast_table_phase;
+
+typedef struct clast_table_list {
+    clast_team team; /* zero */
+    clast_grid grid; /* stands for a buffer behind all others */
+    clast_table_phase phase[CLAST_TABLE_PHASES_MAX];
+} clast_table_list;
+
 #endif

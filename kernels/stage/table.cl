@@ -2,9 +2,21 @@
  * The smaller grain owns a pair (ties: the smaller permanent id), so a grain looks for partners in its own level of the grid and in
  * coarser ones only. Slots are sorted by the partner's permanent id, walls last, so that sums do not depend on the order in memory. */
 
+/* What is counted by several at a time, or by one alone: an atomic operation takes some ten times as long. The value before. */
+INLINE uint table_add(bool shared, __global uint *count, uint more)
+{
+    if (shared)
+        return atomic_add((volatile __global uint *)count, more);
+    uint before = *count;
+    *count = before + more;
+    return before;
+}
+
 INLINE int table_wrap(real t, int cells)
 {
     real c = floor(t);
+    if (c >= R(0.0) && c < (real)cells)
+        return (int)c;
     c = c - (real)cells * floor(c / (real)cells);
     return c >= R(0.0) && c < (real)cells ? (int)c : 0;
 }
@@ -43,35 +55,46 @@ INLINE int table_cell(__global const clast_grid *grid, int level, vec3 x)
 }
 
 /* Cell and rank in it of every grain; what is outside a domain that drops its leavers goes to the last bucket. */
-__kernel void table_bin(const clast_launch launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
-                        __global const exact *restrict radius, __global uint *restrict cell_of, __global uint *restrict rank_of,
-                        __global uint *restrict cell_count)
+INLINE void table_bin_unit(int i, bool shared, const clast_launch *launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
+                           __global const exact *restrict radius, __global uint *restrict cell_of, __global uint *restrict rank_of,
+                           __global uint *restrict cell_count)
 {
-    int i = get_global_id(0);
-    if (i >= launch.particle_count)
+    if (i >= launch->particle_count)
         return;
     vec3 x = GRAIN_POLAR3(position, i);
     int cell = table_cell(grid, table_level(grid, GRAIN_RADIUS(i)), x);
-    vec3 low = from3(launch.low), high = from3(launch.high);
+    vec3 low = from3(launch->low), high = from3(launch->high);
     bool inside = x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y && x.z >= low.z && x.z <= high.z;
     if (grid->drop_outside && !inside)
         cell = grid->cell_count;
     cell_of[i] = cell;
-    rank_of[i] = atomic_inc((volatile __global uint *)&cell_count[cell]);
+    rank_of[i] = table_add(shared, &cell_count[cell], 1);
+}
+
+__kernel void table_bin(const clast_launch launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
+                        __global const exact *restrict radius, __global uint *restrict cell_of, __global uint *restrict rank_of,
+                        __global uint *restrict cell_count)
+{
+    table_bin_unit(get_global_id(0), true, &launch, grid, position, radius, cell_of, rank_of, cell_count);
+}
+
+INLINE void table_order_unit(int i, const clast_launch *launch, __global const uint *restrict cell_of, __global const uint *restrict rank_of,
+                             __global const uint *restrict cell_start, __global int *restrict order)
+{
+    if (i < launch->particle_count)
+        order[cell_start[cell_of[i]] + rank_of[i]] = i;
 }
 
 __kernel void table_order(const clast_launch launch, __global const uint *restrict cell_of, __global const uint *restrict rank_of,
                           __global const uint *restrict cell_start, __global int *restrict order)
 {
-    int i = get_global_id(0);
-    if (i < launch.particle_count)
-        order[cell_start[cell_of[i]] + rank_of[i]] = i;
+    table_order_unit(get_global_id(0), &launch, cell_of, rank_of, cell_start, order);
 }
 
 /* The order within a cell depends on nothing but the permanent ids. */
-__kernel void table_order_cells(__global const uint *restrict cell_start, __global const int *restrict id, __global int *restrict order, const int cells)
+INLINE void table_order_cells_unit(int cell, __global const uint *restrict cell_start, __global const int *restrict id,
+                                   __global int *restrict order, const int cells)
 {
-    int cell = get_global_id(0);
     if (cell >= cells)
         return;
     uint first = cell_start[cell], end = cell_start[cell + 1];
@@ -84,16 +107,31 @@ __kernel void table_order_cells(__global const uint *restrict cell_start, __glob
     }
 }
 
+__kernel void table_order_cells(__global const uint *restrict cell_start, __global const int *restrict id, __global int *restrict order,
+                                const int cells)
+{
+    table_order_cells_unit(get_global_id(0), cell_start, id, order, cells);
+}
+
 /* A field in the new order, whatever its type: `words` of 32 bits a grain. */
+INLINE void table_permute_unit(int i, const clast_launch *launch, __global const int *restrict order, __global const uint *restrict from,
+                               __global uint *restrict to, const int words)
+{
+    if (i >= launch->particle_count)
+        return;
+    size_t old = (size_t)order[i] * words, now = (size_t)i * words;
+    if (words == 6) /* three numbers, as most have: a loop of known length */
+        for (int w = 0; w < 6; w++)
+            to[now + w] = from[old + w];
+    else
+        for (int w = 0; w < words; w++)
+            to[now + w] = from[old + w];
+}
+
 __kernel void table_permute(const clast_launch launch, __global const int *restrict order, __global const uint *restrict from,
                             __global uint *restrict to, const int words)
 {
-    int i = get_global_id(0);
-    if (i >= launch.particle_count)
-        return;
-    size_t old = (size_t)order[i] * words, now = (size_t)i * words;
-    for (int w = 0; w < words; w++)
-        to[now + w] = from[old + w];
+    table_permute_unit(get_global_id(0), &launch, order, from, to, words);
 }
 
 /* A grain as others look for it. */
@@ -160,24 +198,24 @@ INLINE int table_beside(int c, int cells)
 #define TABLE_NEAR_ROOM 32
 
 /* Counts the pairs of i with those that are `near`, and keeps each with its owner where there is room. */
-OUTLINE void table_count_near(int i, const table_grain *g, const int *near, int count, __global const exact *restrict radius, __global const int *restrict id,
+OUTLINE void table_count_near(int i, bool shared, const table_grain *g, const int *near, int count, __global const exact *restrict radius, __global const int *restrict id,
                              __global uint *restrict own_count, __global uint *restrict slot_count, __global int *restrict kept, int room)
 {
     for (int n = 0; n < count; n++) {
         int j = near[n];
         bool mine = table_owns(g, j, radius, id);
         int owner = mine ? i : j;
-        uint row = atomic_inc((volatile __global uint *)&own_count[owner]);
+        uint row = table_add(shared, &own_count[owner], 1);
         if (row < (uint)room)
             kept[(size_t)owner * room + row] = mine ? j : i;
-        atomic_inc((volatile __global uint *)&slot_count[j]);
+        table_add(shared, &slot_count[j], 1);
     }
-    atomic_add((volatile __global uint *)&slot_count[i], (uint)count);
+    table_add(shared, &slot_count[i], (uint)count);
 }
 
 /* Pairs owned by each grain, and slots each grain needs; both counts must be zero before. The first `room` partners of each grain are `kept`,
  * in any order, so that most grains need not be searched for twice. Of two grains of a level the first comes upon the second: a pair is seen once. */
-BODY void table_count_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
+BODY void table_count_unit(int i, bool shared, const clast_launch *launch, __global const clast_grid *restrict grid,
                            __global const uint *restrict cell_start, __global const exact *restrict position,
                            __global const exact *restrict radius, __global const int *restrict id, __global uint *restrict own_count,
                            __global uint *restrict slot_count, __global int *restrict kept, const int room)
@@ -191,7 +229,7 @@ BODY void table_count_unit(int i, const clast_launch *launch, __global const cla
     near[count] = (int)(j);                                                                  \
     count += table_near(launch, skin, &g, j, position, radius) ? 1 : 0;                      \
     if (count == TABLE_NEAR_ROOM) {                                                          \
-        table_count_near(i, &g, near, count, radius, id, own_count, slot_count, kept, room); \
+        table_count_near(i, shared, &g, near, count, radius, id, own_count, slot_count, kept, room); \
         count = 0;                                                                           \
     }
 #define TABLE_MEET_LATER(j) \
@@ -205,7 +243,7 @@ BODY void table_count_unit(int i, const clast_launch *launch, __global const cla
         int n0 = v->cells[0], n1 = v->cells[1], n2 = v->cells[2];
         if (l < own_level)
             TABLE_AROUND(v, spot, TABLE_MEET)
-        else if (min(n0, min(n1, n2)) < 3) /* cells before it are cells behind it too */
+        else if (min(n0, n1) < 3 || n2 == 2) /* cells before it are cells behind it too */
             TABLE_AROUND(v, spot, TABLE_MEET_LATER)
         else {
             int y = table_beside(spot.y + 1, n1), z = table_beside(spot.z + 1, n2), row = v->first_cell + (spot.z * n1 + spot.y) * n0;
@@ -216,11 +254,11 @@ BODY void table_count_unit(int i, const clast_launch *launch, __global const cla
             if (spot.x == n0 - 1)
                 TABLE_ROW(row, 0, 1, n0, TABLE_MEET)
             TABLE_ROW(v->first_cell + (spot.z * n1 + y) * n0, spot.x - 1, 3, n0, TABLE_MEET)
-            for (int side = -1; side <= 1; side++)
+            for (int side = n2 > 1 ? -1 : 2; side <= 1; side++) /* of a bed of one layer of cells there is no other */
                 TABLE_ROW(v->first_cell + (z * n1 + table_beside(spot.y + side, n1)) * n0, spot.x - 1, 3, n0, TABLE_MEET)
         }
     }
-    table_count_near(i, &g, near, count, radius, id, own_count, slot_count, kept, room);
+    table_count_near(i, shared, &g, near, count, radius, id, own_count, slot_count, kept, room);
 }
 
 __kernel void table_count(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
@@ -228,7 +266,7 @@ __kernel void table_count(const clast_launch launch, __global const clast_grid *
                           __global uint *restrict own_count, __global uint *restrict slot_count, __global int *restrict kept,
                           const int room)
 {
-    table_count_unit(get_global_id(0), &launch, grid, cell_start, position, radius, id, own_count, slot_count, kept, room);
+    table_count_unit(get_global_id(0), true, &launch, grid, cell_start, position, radius, id, own_count, slot_count, kept, room);
 }
 
 /* Writes the pairs of each grain, sorted by the partner's permanent id. */
@@ -276,10 +314,10 @@ __kernel void table_fill(const clast_launch launch, __global const clast_grid *r
 }
 
 /* Records that fill up a work-group, behind the pairs and behind the walls, name grain 0 twice. */
-__kernel void table_pad(__global int *restrict owner, __global int *restrict other, const int pair_end, const int wall_base, const int wall_end,
-                        const int record_count)
+INLINE void table_pad_unit(int place, __global int *restrict owner, __global int *restrict other, const int pair_end, const int wall_base,
+                           const int wall_end, const int record_count)
 {
-    int k = pair_end + (int)get_global_id(0);
+    int k = pair_end + place;
     k = k < wall_base ? k : wall_end + k - wall_base;
     if (k < record_count) {
         owner[k] = 0;
@@ -287,31 +325,47 @@ __kernel void table_pad(__global int *restrict owner, __global int *restrict oth
     }
 }
 
-/* Slots of a block: as many rows as its fullest grain needs. */
-__kernel void table_widths(__global const uint *restrict slot_count, __global uint *restrict width)
+__kernel void table_pad(__global int *restrict owner, __global int *restrict other, const int pair_end, const int wall_base, const int wall_end,
+                        const int record_count)
 {
-    int block = get_global_id(0);
+    table_pad_unit(get_global_id(0), owner, other, pair_end, wall_base, wall_end, record_count);
+}
+
+/* Slots of a block: as many rows as its fullest grain needs. */
+INLINE void table_widths_unit(int block, __global const uint *restrict slot_count, __global uint *restrict width)
+{
     uint most = 0;
     for (int n = 0; n < CLAST_BLOCK; n++)
         most = max(most, slot_count[block * CLAST_BLOCK + n]);
     width[block] = most * CLAST_BLOCK;
 }
 
-__kernel void table_slots(__global const int *restrict owner, __global const int *restrict other, __global const uint *restrict slot_offset,
-                          __global uint *restrict cursor, __global int *restrict slots, const int pair_count, const int wall_base,
-                          const int record_count)
+__kernel void table_widths(__global const uint *restrict slot_count, __global uint *restrict width)
 {
-    int k = get_global_id(0);
+    table_widths_unit(get_global_id(0), slot_count, width);
+}
+
+INLINE void table_slots_unit(int k, bool shared, __global const int *restrict owner, __global const int *restrict other,
+                             __global const uint *restrict slot_offset, __global uint *restrict cursor, __global int *restrict slots,
+                             const int pair_count, const int wall_base, const int record_count)
+{
     if (k >= record_count || (k >= pair_count && k < wall_base))
         return;
     int i = owner[k];
-    uint row = atomic_inc((volatile __global uint *)&cursor[i]);
+    uint row = table_add(shared, &cursor[i], 1);
     slots[slot_offset[i / CLAST_BLOCK] + row * CLAST_BLOCK + i % CLAST_BLOCK] = k + 1;
     if (k >= pair_count)
         return;
     int j = other[k];
-    row = atomic_inc((volatile __global uint *)&cursor[j]);
+    row = table_add(shared, &cursor[j], 1);
     slots[slot_offset[j / CLAST_BLOCK] + row * CLAST_BLOCK + j % CLAST_BLOCK] = -(k + 1);
+}
+
+__kernel void table_slots(__global const int *restrict owner, __global const int *restrict other, __global const uint *restrict slot_offset,
+                          __global uint *restrict cursor, __global int *restrict slots, const int pair_count, const int wall_base,
+                          const int record_count)
+{
+    table_slots_unit(get_global_id(0), true, owner, other, slot_offset, cursor, slots, pair_count, wall_base, record_count);
 }
 
 /* What a slot is sorted by: the partner's permanent id; faces of walls after all grains. */
@@ -349,10 +403,9 @@ __kernel void table_sort_slots(const clast_launch launch, __global const int *re
 }
 
 /* Of every block the first and the last record of a pair that its grains take part in, side by side; wall_base and -1: none. */
-__kernel void table_last_records(__global const uint *restrict slot_offset, __global const int *restrict slots, __global int *restrict ends,
-                                 const int wall_base, const int blocks)
+INLINE void table_last_records_unit(int block, __global const uint *restrict slot_offset, __global const int *restrict slots,
+                                    __global int *restrict ends, const int wall_base, const int blocks)
 {
-    int block = get_global_id(0);
     if (block >= blocks)
         return;
     int first = wall_base, last = -1;
@@ -366,11 +419,16 @@ __kernel void table_last_records(__global const uint *restrict slot_offset, __gl
     ends[2 * block + 1] = last;
 }
 
-/* Of every work-group of records the latest that a grain of theirs waits for, in terms of what `wait` says of its block. */
-__kernel void table_releases(__global const int *restrict owner, __global const int *restrict other, __global const int *restrict wait,
-                             __global int *restrict release, const int pair_count, const int groups)
+__kernel void table_last_records(__global const uint *restrict slot_offset, __global const int *restrict slots, __global int *restrict ends,
+                                 const int wall_base, const int blocks)
 {
-    int group = get_global_id(0);
+    table_last_records_unit(get_global_id(0), slot_offset, slots, ends, wall_base, blocks);
+}
+
+/* Of every work-group of records the latest that a grain of theirs waits for, in terms of what `wait` says of its block. */
+INLINE void table_releases_unit(int group, __global const int *restrict owner, __global const int *restrict other,
+                                __global const int *restrict wait, __global int *restrict release, const int pair_count, const int groups)
+{
     if (group >= groups)
         return;
     int latest = 0;
@@ -379,11 +437,16 @@ __kernel void table_releases(__global const int *restrict owner, __global const 
     release[group] = latest;
 }
 
-/* Slots with the places of forces for those of records: chunks of records stand where `place` says, wall records behind all chunks. */
-__kernel void table_place(__global const int *restrict slots, __global const int *restrict place, __global int *restrict placed, const int count,
-                          const int wall_base, const int chunk, const int wall_shift)
+__kernel void table_releases(__global const int *restrict owner, __global const int *restrict other, __global const int *restrict wait,
+                             __global int *restrict release, const int pair_count, const int groups)
 {
-    int s = get_global_id(0);
+    table_releases_unit(get_global_id(0), owner, other, wait, release, pair_count, groups);
+}
+
+/* Slots with the places of forces for those of records: chunks of records stand where `place` says, wall records behind all chunks. */
+INLINE void table_place_unit(int s, __global const int *restrict slots, __global const int *restrict place, __global int *restrict placed,
+                             const int count, const int wall_base, const int chunk, const int wall_shift)
+{
     if (s >= count)
         return;
     int entry = slots[s], k = abs(entry) - 1;
@@ -395,14 +458,19 @@ __kernel void table_place(__global const int *restrict slots, __global const int
     }
 }
 
+__kernel void table_place(__global const int *restrict slots, __global const int *restrict place, __global int *restrict placed, const int count,
+                          const int wall_base, const int chunk, const int wall_shift)
+{
+    table_place_unit(get_global_id(0), slots, place, placed, count, wall_base, chunk, wall_shift);
+}
+
 /* For every new record the old one of the same two partners: index + 1, negative where the pair has changed its owner, 0 where there was
  * none. `order` leads from new to old indices. */
-__kernel void table_match(__global const int *restrict owner, __global const int *restrict other, __global const int *restrict order,
-                          __global const int *restrict old_owner, __global const int *restrict old_other,
-                          __global const uint *restrict old_slot_offset, __global const int *restrict old_slots, __global int *restrict match,
-                          const int pair_count, const int wall_base, const int wall_end, const int record_count, const int old_wall_base)
+INLINE void table_match_unit(int k, __global const int *restrict owner, __global const int *restrict other, __global const int *restrict order,
+                             __global const int *restrict old_owner, __global const int *restrict old_other,
+                             __global const uint *restrict old_slot_offset, __global const int *restrict old_slots, __global int *restrict match,
+                             const int pair_count, const int wall_base, const int wall_end, const int record_count, const int old_wall_base)
 {
-    int k = get_global_id(0);
     if (k >= record_count)
         return;
     match[k] = 0;
@@ -426,11 +494,19 @@ __kernel void table_match(__global const int *restrict owner, __global const int
     }
 }
 
-/* Moves a history, whose components stand `stride` apart in each buffer; `odd` ones change sign with the owner. */
-__kernel void table_carry(__global const int *restrict match, __global const real *restrict from, __global real *restrict to, const long from_stride,
-                          const long to_stride, const int record_count, const int components, const int odd)
+__kernel void table_match(__global const int *restrict owner, __global const int *restrict other, __global const int *restrict order,
+                          __global const int *restrict old_owner, __global const int *restrict old_other,
+                          __global const uint *restrict old_slot_offset, __global const int *restrict old_slots, __global int *restrict match,
+                          const int pair_count, const int wall_base, const int wall_end, const int record_count, const int old_wall_base)
 {
-    int k = get_global_id(0);
+    table_match_unit(get_global_id(0), owner, other, order, old_owner, old_other, old_slot_offset, old_slots, match, pair_count, wall_base,
+                     wall_end, record_count, old_wall_base);
+}
+
+/* Moves a history, whose components stand `stride` apart in each buffer; `odd` ones change sign with the owner. */
+INLINE void table_carry_unit(int k, __global const int *restrict match, __global const real *restrict from, __global real *restrict to,
+                             const long from_stride, const long to_stride, const int record_count, const int components, const int odd)
+{
     if (k >= record_count)
         return;
     int m = match[k], old = (m > 0 ? m : -m) - 1;
@@ -438,6 +514,12 @@ __kernel void table_carry(__global const int *restrict match, __global const rea
         real value = m == 0 ? R(0.0) : AT(from, from_stride, c, old);
         AT(to, to_stride, c, k) = odd && m < 0 ? -value : value;
     }
+}
+
+__kernel void table_carry(__global const int *restrict match, __global const real *restrict from, __global real *restrict to,
+                          const long from_stride, const long to_stride, const int record_count, const int components, const int odd)
+{
+    table_carry_unit(get_global_id(0), match, from, to, from_stride, to_stride, record_count, components, odd);
 }
 
 /* Per chunk of grains the square of the largest displacement since the table was built, relative to the common one. */
@@ -460,4 +542,19 @@ __kernel void table_where(const clast_launch launch, __global const int *restric
     int i = get_global_id(0);
     if (i < launch.particle_count)
         where[id[i]] = i;
+}
+
+/* What the host waits for of a table: pairs, records of walls and slots, side by side. */
+INLINE void table_totals_unit(__global const uint *restrict own_start, __global const uint *restrict wall_start, __global const uint *restrict slot_offset,
+                              __global uint *restrict totals, const int grains, const int blocks)
+{
+    totals[0] = own_start[grains];
+    totals[1] = wall_start[grains];
+    totals[2] = slot_offset[blocks];
+}
+
+__kernel void table_totals(__global const uint *restrict own_start, __global const uint *restrict wall_start, __global const uint *restrict slot_offset,
+                           __global uint *restrict totals, const int grains, const int blocks)
+{
+    table_totals_unit(own_start, wall_start, slot_offset, totals, grains, blocks);
 }

@@ -19,11 +19,15 @@ __kernel void table_bond_sums(__global const real *restrict bonded, __global exa
 /* ---- bonds that reach further than the table looks ---- */
 
 /* New index of every grain by its old one; -1 (set before) for those that have left. */
+INLINE void table_bond_inverse_unit(int i, const clast_launch *launch, __global const int *restrict order, __global int *restrict inverse)
+{
+    if (i < launch->particle_count)
+        inverse[order[i]] = i;
+}
+
 __kernel void table_bond_inverse(const clast_launch launch, __global const int *restrict order, __global int *restrict inverse)
 {
-    int i = get_global_id(0);
-    if (i < launch.particle_count)
-        inverse[order[i]] = i;
+    table_bond_inverse_unit(get_global_id(0), &launch, order, inverse);
 }
 
 /* Calls TAKE(j) for every grain that i is bonded to, owns the pair with, and would not find. */
@@ -39,21 +43,20 @@ __kernel void table_bond_inverse(const clast_launch launch, __global const int *
         int j = inverse[entry > 0 ? old_other[a] : old_owner[a]];                                                             \
         if (j < 0)                                                                                                            \
             continue;                                                                                                         \
-        if (table_owns(&g, j, radius, id) && !table_near(&launch, skin, &g, j, position, radius)) {                           \
+        if (table_owns(&g, j, radius, id) && !table_near(launch, skin, &g, j, position, radius)) {                           \
             TAKE(j);                                                                                                          \
         }                                                                                                                     \
     }
 
 /* Adds them to what each grain owns and to its slots, and to the partners that are `kept` where there is room. */
-__kernel void table_bond_count(const clast_launch launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
-                               __global const exact *restrict radius, __global const int *restrict id, __global const int *restrict order,
-                               __global const int *restrict inverse, __global const int *restrict old_owner, __global const int *restrict old_other,
-                               __global const uint *restrict old_slot_offset, __global const int *restrict old_slots,
-                               __global const real *restrict bonded, __global uint *restrict own_count, __global uint *restrict slot_count,
-                               __global int *restrict kept, const int room, const int old_wall_base)
+INLINE void table_bond_count_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
+                                  __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id,
+                                  __global const int *restrict order, __global const int *restrict inverse, __global const int *restrict old_owner,
+                                  __global const int *restrict old_other, __global const uint *restrict old_slot_offset,
+                                  __global const int *restrict old_slots, __global const real *restrict bonded, __global uint *restrict own_count,
+                                  __global uint *restrict slot_count, __global int *restrict kept, const int room, const int old_wall_base)
 {
-    int i = get_global_id(0);
-    if (i >= launch.particle_count)
+    if (i >= launch->particle_count)
         return;
     table_grain g = table_grain_of(i, position, radius, id);
     real skin = number(grid->skin);
@@ -68,16 +71,27 @@ __kernel void table_bond_count(const clast_launch launch, __global const clast_g
     atomic_add((volatile __global uint *)&slot_count[i], found - before);
 }
 
-/* Grains whose partners were not all kept have been searched for again: theirs are put where they belong among what was found. */
-__kernel void table_bond_fill(const clast_launch launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
-                              __global const exact *restrict radius, __global const int *restrict id, __global const int *restrict order,
-                              __global const int *restrict inverse, __global const int *restrict old_owner, __global const int *restrict old_other,
-                              __global const uint *restrict old_slot_offset, __global const int *restrict old_slots,
-                              __global const real *restrict bonded, __global const uint *restrict own_start, __global int *restrict owner,
-                              __global int *restrict other, const int room, const int old_wall_base)
+__kernel void table_bond_count(const clast_launch launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
+                               __global const exact *restrict radius, __global const int *restrict id, __global const int *restrict order,
+                               __global const int *restrict inverse, __global const int *restrict old_owner, __global const int *restrict old_other,
+                               __global const uint *restrict old_slot_offset, __global const int *restrict old_slots,
+                               __global const real *restrict bonded, __global uint *restrict own_count, __global uint *restrict slot_count,
+                               __global int *restrict kept, const int room, const int old_wall_base)
 {
-    int i = get_global_id(0);
-    if (i >= launch.particle_count || (int)(own_start[i + 1] - own_start[i]) <= room)
+    table_bond_count_unit(get_global_id(0), &launch, grid, position, radius, id, order, inverse, old_owner, old_other, old_slot_offset, old_slots,
+                          bonded, own_count, slot_count, kept, room, old_wall_base);
+}
+
+/* Grains whose partners were not all kept have been searched for again: theirs are put where they belong among what was found. */
+INLINE void table_bond_fill_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
+                                 __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id,
+                                 __global const int *restrict order, __global const int *restrict inverse, __global const int *restrict old_owner,
+                                 __global const int *restrict old_other, __global const uint *restrict old_slot_offset,
+                                 __global const int *restrict old_slots, __global const real *restrict bonded,
+                                 __global const uint *restrict own_start, __global int *restrict owner, __global int *restrict other,
+                                 const int room, const int old_wall_base)
+{
+    if (i >= launch->particle_count || (int)(own_start[i + 1] - own_start[i]) <= room)
         return;
     table_grain g = table_grain_of(i, position, radius, id);
     real skin = number(grid->skin);
@@ -97,3 +111,23 @@ __kernel void table_bond_fill(const clast_launch launch, __global const clast_gr
         TABLE_FOR_BONDED(TABLE_WRITE_BONDED)
     }
 }
+
+__kernel void table_bond_fill(const clast_launch launch, __global const clast_grid *restrict grid, __global const exact *restrict position,
+                              __global const exact *restrict radius, __global const int *restrict id, __global const int *restrict order,
+                              __global const int *restrict inverse, __global const int *restrict old_owner, __global const int *restrict old_other,
+                              __global const uint *restrict old_slot_offset, __global const int *restrict old_slots,
+                              __global const real *restrict bonded, __global const uint *restrict own_start, __global int *restrict owner,
+                              __global int *restrict other, const int room, const int old_wall_base)
+{
+    table_bond_fill_unit(get_global_id(0), &launch, grid, position, radius, id, order, inverse, old_owner, old_other, old_slot_offset, old_slots,
+                         bonded, own_start, owner, other, room, old_wall_base);
+}
+
+#define TABLE_BOND_PHASES                                                                                                                        \
+    TABLE_PHASE(table_bond_inverse, launch, READ(0, int), WRITE(1, int))                                                                         \
+    TABLE_PHASE(table_bond_count, launch, READ(0, clast_grid), READ(1, exact), READ(2, exact), READ(3, int), READ(4, int), READ(5, int),         \
+                READ(6, int), READ(7, int), READ(8, uint), READ(9, int), READ(10, real), WRITE(11, uint), WRITE(12, uint), WRITE(13, int),       \
+                (int)n0, (int)n1)                                                                                                                \
+    TABLE_PHASE(table_bond_fill, launch, READ(0, clast_grid), READ(1, exact), READ(2, exact), READ(3, int), READ(4, int), READ(5, int),          \
+                READ(6, int), READ(7, int), READ(8, uint), READ(9, int), READ(10, real), READ(11, uint), WRITE(12, int), WRITE(13, int),         \
+                (int)n0, (int)n1)

@@ -76,3 +76,8 @@ __kernel void table_fill_walls(const clast_launch launch, __global const clast_g
 {
     table_fill_walls_unit(get_global_id(0), &launch, grid, position, radius, faces, wall_start, owner, other, wall_base);
 }
+
+#define TABLE_WALL_PHASES                                                                                                                              \
+    TABLE_PHASE(table_count_walls, launch, READ(0, clast_grid), READ(1, exact), READ(2, exact), READ(3, clast_face), WRITE(4, uint), WRITE(5, uint))    \
+    TABLE_PHASE(table_fill_walls, launch, READ(0, clast_grid), READ(1, exact), READ(2, exact), READ(3, clast_face), READ(4, uint), WRITE(5, int),       \
+                WRITE(6, int), (int)n0)

@@ -107,8 +107,13 @@ static int files_of(const live_laws *live, const char **files)
 {
     const char *table[LIVE_TABLE_FILES];
     int count = live_files(live, files, FILES_MAX - 1 - LIVE_TABLE_FILES), tables = live_table_files(live, table);
-    for (int f = 3; f < tables; f++) /* the first three, precision, dimensions and periodic box, are in both */
-        files[count++] = table[f];
+    for (int f = 0, own = count; f < tables; f++) { /* some are in both */
+        int same = 0;
+        while (same < own && strcmp(files[same], table[f]) != 0)
+            same++;
+        if (same == own)
+            files[count++] = table[f];
+    }
     files[count++] = "stage/step_loop.cl";
     live_laws moving = *live; /* these are of a frozen stage, which has all files but that of stages that move */
     moving.frozen = false;
@@ -446,6 +451,12 @@ static const shared_place places[] = {
     PLACE(clast_face, party),
     PLACE(clast_face, wall),
     PLACE(clast_face, drive),
+    SIZE(clast_table_phase),
+    PLACE(clast_table_phase, kind),
+    PLACE(clast_table_phase, memory),
+    SIZE(clast_table_list),
+    PLACE(clast_table_list, grid),
+    PLACE(clast_table_list, phase),
     SIZE(clast_servo),
     PLACE(clast_servo, target),
     PLACE(clast_servo, speed_max),

@@ -1,0 +1,2 @@
+/* Phases of a table for bonds: none. */
+#define TABLE_BOND_PHASES
