@@ -215,7 +215,7 @@ OUTLINE void table_count_near(int i, bool shared, const table_grain *g, const in
 
 /* Pairs owned by each grain, and slots each grain needs; both counts must be zero before. The first `room` partners of each grain are `kept`,
  * in any order, so that most grains need not be searched for twice. Of two grains of a level the first comes upon the second: a pair is seen once. */
-BODY void table_count_unit(int i, bool shared, const clast_launch *launch, __global const clast_grid *restrict grid,
+INLINE void table_count_unit(int i, bool shared, const clast_launch *launch, __global const clast_grid *restrict grid,
                            __global const uint *restrict cell_start, __global const exact *restrict position,
                            __global const exact *restrict radius, __global const int *restrict id, __global uint *restrict own_count,
                            __global uint *restrict slot_count, __global int *restrict kept, const int room)
@@ -270,7 +270,7 @@ __kernel void table_count(const clast_launch launch, __global const clast_grid *
 }
 
 /* Writes the pairs of each grain, sorted by the partner's permanent id. */
-BODY void table_fill_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
+INLINE void table_fill_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
                           __global const uint *restrict cell_start, __global const exact *restrict position,
                           __global const exact *restrict radius, __global const int *restrict id, __global const uint *restrict own_start,
                           __global int *restrict owner, __global int *restrict other, __global const int *restrict kept, const int room)
@@ -378,7 +378,7 @@ INLINE long table_partner(int entry, int wall_base, __global const int *restrict
     return id[entry > 0 ? other[k] : owner[k]];
 }
 
-BODY void table_sort_slots_unit(int i, const clast_launch *launch, __global const int *restrict owner, __global const int *restrict other,
+INLINE void table_sort_slots_unit(int i, const clast_launch *launch, __global const int *restrict owner, __global const int *restrict other,
                                 __global const int *restrict id, __global const uint *restrict slot_offset,
                                 __global const uint *restrict slot_count, __global int *restrict slots, const int wall_base)
 {

@@ -29,7 +29,7 @@ INLINE bool table_reaches(__global const clast_face *face, precise3 x, real reac
     return u < a + reach && v < number(face->extent[1]) + reach;
 }
 
-BODY void table_count_walls_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
+INLINE void table_count_walls_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
                                  __global const exact *restrict position, __global const exact *restrict radius,
                                  __global const clast_face *restrict faces, __global uint *restrict wall_count,
                                  __global uint *restrict slot_count)
@@ -52,7 +52,7 @@ __kernel void table_count_walls(const clast_launch launch, __global const clast_
     table_count_walls_unit(get_global_id(0), &launch, grid, position, radius, faces, wall_count, slot_count);
 }
 
-BODY void table_fill_walls_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
+INLINE void table_fill_walls_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
                                 __global const exact *restrict position, __global const exact *restrict radius,
                                 __global const clast_face *restrict faces, __global const uint *restrict wall_start,
                                 __global int *restrict owner, __global int *restrict other, const int wall_base)
