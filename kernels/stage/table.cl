@@ -12,13 +12,15 @@ INLINE uint table_add(bool shared, __global uint *count, uint more)
     return before;
 }
 
+/* The cell along one direction, beyond the last one the first again. In whole numbers: pocl's floor() and a division take longer than all the rest. */
 INLINE int table_wrap(real t, int cells)
 {
-    real c = floor(t);
-    if (c >= R(0.0) && c < (real)cells)
-        return (int)c;
-    c = c - (real)cells * floor(c / (real)cells);
-    return c >= R(0.0) && c < (real)cells ? (int)c : 0;
+    if (t >= R(0.0) && t < (real)cells)
+        return (int)t;
+    if (!(fabs(t) < R(1e9)))
+        return 0;
+    int c = (int)t, rest = (c - ((real)c > t ? 1 : 0)) % cells;
+    return rest < 0 ? rest + cells : rest;
 }
 
 INLINE int table_level(__global const clast_grid *grid, real r)
