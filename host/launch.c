@@ -167,8 +167,7 @@ static status open_program(simulation *sim, const char *constants, const char *c
 {
     char *text = NULL;
     TRY(program_assemble(constants, files, count, sim->kernels_directory, &text, why));
-    /* a product with what is always 0 may be left out where no number can be infinite */
-    status result = program_build(sim->device, text, sim->live.law[SLOT_DIMENSIONS] ? "-cl-finite-math-only" : "", out, why);
+    status result = program_build(sim->device, text, out, why);
     free(text);
     return result;
 }

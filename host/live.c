@@ -380,7 +380,8 @@ void live_constants(const live_laws *live, const scene *scene, char *text, size_
     snprintf(text + used, size - used, "#define LOOP_ITEMS %d\n", live->loop_items > 0 ? live->loop_items : 1);
     used = strlen(text);
     if (live->blocks)
-        snprintf(text + used, size - used, "#define LANES %d\n", live->lanes > 0 ? live->lanes : 4);
+        snprintf(text + used, size - used, "#define LANES %d\n#define PAIRS_ACT_APART %d\n", live->lanes > 0 ? live->lanes : 4,
+                 live->law[SLOT_BOND] || live->law[SLOT_COHESION] || live->law[SLOT_DISSIPATION]);
     used = strlen(text);
     snprintf(text + used, size - used, "#define CONTACT_CONSTANTS %d\n", live_constant_count(live));
     if (live->law[SLOT_COMPOSITION]) {

@@ -8,7 +8,9 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char usual_options[] = "-cl-std=CL1.2 -cl-kernel-arg-info -cl-no-signed-zeros";
+/* A product with what is always 0 may be left out: no sign of a 0 counts, and no number is infinite or none but in a run that a guard will stop, which
+ * looks at bits (is_number). */
+static const char build_options[] = "-cl-std=CL1.2 -cl-kernel-arg-info -cl-no-signed-zeros -cl-finite-math-only";
 
 static status read_kernel_file(const char *directory, const char *name, char **text, failure *why)
 {
@@ -83,7 +85,7 @@ static uint64_t hash_text(uint64_t hash, const char *text)
     return (hash ^ 0xffu) * 1099511628211u;
 }
 
-static bool load_binary(const device *device, const char *path, const char *options, cl_program *out)
+static bool load_binary(const device *device, const char *path, cl_program *out)
 {
     FILE *file = fopen(path, "rb");
     if (!file)
@@ -104,7 +106,7 @@ static bool load_binary(const device *device, const char *path, const char *opti
         program = clCreateProgramWithBinary(device->context, 1, &device->info.id, &length, &start, &loaded, &code);
         if (code != CL_SUCCESS)
             program = NULL;
-        else if (clBuildProgram(program, 1, &device->info.id, options, NULL, NULL) != CL_SUCCESS) {
+        else if (clBuildProgram(program, 1, &device->info.id, build_options, NULL, NULL) != CL_SUCCESS) {
             clReleaseProgram(program);
             program = NULL;
         }
@@ -222,26 +224,24 @@ static void put_on_shelf(program_shelf *shelf, const char *text, cl_program prog
 
 /* ---- building ---- */
 
-static status build(const device *device, const char *text, const char *more_options, cl_program *out, failure *why)
+static status build(const device *device, const char *text, cl_program *out, failure *why)
 {
-    char options[256];
-    snprintf(options, sizeof options, "%s %s", usual_options, more_options);
     uint64_t key = hash_text(14695981039346656037u, text);
-    key = hash_text(hash_text(key, options), device->info.name);
+    key = hash_text(hash_text(key, build_options), device->info.name);
     key = hash_text(hash_text(key, device->info.driver), device->info.version);
     char path[4096];
     bool cached = !driver_keeps_programs(device) && cache_directory(path, sizeof path);
     if (cached) {
         size_t used = strlen(path);
         snprintf(path + used, sizeof path - used, "/%016llx.bin", (unsigned long long)key);
-        if (load_binary(device, path, options, out))
+        if (load_binary(device, path, out))
             return STATUS_OK;
     }
     cl_int code;
     cl_program program = clCreateProgramWithSource(device->context, 1, &text, NULL, &code);
     if (code != CL_SUCCESS)
         return fail(why, STATUS_DEVICE, "the device refuses the program: %s", device_error_name(code));
-    if (clBuildProgram(program, 1, &device->info.id, options, NULL, NULL) != CL_SUCCESS) {
+    if (clBuildProgram(program, 1, &device->info.id, build_options, NULL, NULL) != CL_SUCCESS) {
         status result = report_build(device, program, text, key, why);
         clReleaseProgram(program);
         return result;
@@ -252,11 +252,11 @@ static status build(const device *device, const char *text, const char *more_opt
     return STATUS_OK;
 }
 
-status program_build(const device *device, const char *text, const char *more_options, cl_program *out, failure *why)
+status program_build(const device *device, const char *text, cl_program *out, failure *why)
 {
     if (take_from_shelf(device->programs, text, out))
         return STATUS_OK;
-    TRY(build(device, text, more_options, out, why));
+    TRY(build(device, text, out, why));
     put_on_shelf(device->programs, text, *out);
     return STATUS_OK;
 }

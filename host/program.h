@@ -18,7 +18,7 @@ status program_assemble(const char *constants, const char *const *files, int fil
 
 /* Builds, or takes the program that this device has built from the same text before, or the binary of an earlier run from the cache (key: source,
  * options, device, driver). Caller releases the program. When the build fails the message holds the driver's log and where the source was written. */
-status program_build(const device *device, const char *text, const char *more_options, cl_program *out, failure *why);
+status program_build(const device *device, const char *text, cl_program *out, failure *why);
 
 /* The programs that a device has built last: stages, copies of a scene and studies ask for the same ones again and again, and even a driver that
  * keeps what it has compiled parses the source for each. NULL, where memory is out, keeps none. */

@@ -241,7 +241,7 @@ status traffic_copy_speed(device *device, double bytes, double *bytes_per_s, fai
     size_t each = ((size_t)(0.5 * bytes) / (16 * CLAST_BLOCK) + 1) * (16 * CLAST_BLOCK);
     cl_program program;
     cl_int code, code_to;
-    TRY(program_build(device, copy_source, "", &program, why));
+    TRY(program_build(device, copy_source, &program, why));
     cl_kernel kernel = clCreateKernel(program, "copy", &code);
     if (code != CL_SUCCESS) {
         clReleaseProgram(program);

@@ -7,6 +7,9 @@
 /* LANES: numbers in the widest register of the device (host/live.c). */
 #define VECTOR_LOOP _Pragma("clang loop vectorize(assume_safety) vectorize_width(LANES)")
 #define BLOCKS_AHEAD 3
+/* Records that go through the laws together: most that stand in a table do not touch, and where none of these does, none needs to. */
+#define TOGETHER (LANES < 4 ? 4 : LANES)
+#define TEAMS (CLAST_BLOCK / TOGETHER)
 /* Rows of one of the two grains: numbers that are wanted with all their bits take EXACT_REALS rows. */
 #define ROW_POSITION 0
 #define ROW_RADIUS (3 * EXACT_REALS)
@@ -102,12 +105,16 @@ INLINE void rows_exact_axial3(__global const exact *field, int4 i, real *to)
     row_exact(z, ROW(to, 2 * EXACT_REALS), CLAST_BLOCK);
 }
 
-/* Four records' grains on one side, into the rows of that side. */
-INLINE void rows_fill(int4 i, real *to PAIR_DECLARE)
+/* Four records' grains on one side, into the rows of that side: what tells whether they may touch, and the rest. */
+INLINE void rows_fill_places(int4 i, real *to PAIR_DECLARE)
 {
     __global const ulong *radii = (__global const ulong *)radius;
     rows_exact_polar3(position, i, ROW(to, ROW_POSITION));
     row_exact((ulong4)(radii[i.s0], radii[i.s1], radii[i.s2], radii[i.s3]), ROW(to, ROW_RADIUS), CLAST_BLOCK);
+}
+
+INLINE void rows_fill_rest(int4 i, real *to PAIR_DECLARE)
+{
     vstore4((real4)(mass[i.s0], mass[i.s1], mass[i.s2], mass[i.s3]), 0, ROW(to, ROW_MASS));
     rows_polar3(velocity, i, ROW(to, ROW_VELOCITY));
     ROTATION_ROWS_FILL(i, ROW(to, ROW_SPIN));
@@ -133,8 +140,29 @@ INLINE void pair_of_rows(const clast_launch *launch, const real *owners, const r
     contact c;
     sphere_of_rows(owners, lane, &s_i);
     sphere_of_rows(others, lane, &s_j);
-    contact_of_spheres(launch, owner[k], other[k], &s_i, &s_j, &c PAIR_PASS);
+    contact_of_spheres(launch, owner[k], other[k], &s_i, &s_j, true, &c PAIR_PASS);
     PAIR_FROM_CONTACT(PAIR_STORE_STATE);
+}
+
+/* The same where the two do not touch and no law acts on them: of the laws nothing is left but that forces and histories are 0. */
+INLINE void pair_of_strangers(const clast_launch *launch, const real *owners, const real *others, int lane, int k PAIR_DECLARE)
+{
+    sphere s_i = {ROW_PRECISE_POLAR3(owners, ROW_POSITION, lane)}, s_j = {ROW_PRECISE_POLAR3(others, ROW_POSITION, lane)};
+    contact c;
+    s_i.radius = ROW_PRECISE(owners, ROW_RADIUS, lane);
+    s_j.radius = ROW_PRECISE(others, ROW_RADIUS, lane);
+    s_i.mass = s_j.mass = R(1.0);
+    contact_of_spheres(launch, owner[k], other[k], &s_i, &s_j, false, &c PAIR_PASS);
+    PAIR_FROM_CONTACT(PAIR_STORE_STATE);
+}
+
+/* Whether the two of a record may touch: surely so where they do. */
+INLINE int pair_is_near(const clast_launch *launch, const real *owners, const real *others, int lane)
+{
+    precise3 from = ROW_PRECISE_POLAR3(owners, ROW_POSITION, lane), to = ROW_PRECISE_POLAR3(others, ROW_POSITION, lane);
+    vec3 d = apart_vector(periodic_nearest(launch, apart_of(to, from)));
+    real sum = rounded(ROW_PRECISE(owners, ROW_RADIUS, lane)) + rounded(ROW_PRECISE(others, ROW_RADIUS, lane));
+    return dot3(d, d) < R(1.00001) * sum * sum;
 }
 
 /* Pocl's prefetch() does nothing. */
@@ -163,15 +191,39 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
 {
     real owners[ROWS_OF_GRAIN * CLAST_BLOCK], others[ROWS_OF_GRAIN * CLAST_BLOCK];
     int k = (int)(widest((ulong8)((ulong)(CLAST_BLOCK * group))).s0 - 1);
+    int near[CLAST_BLOCK];
     for (int quad = 0; quad < CLAST_BLOCK / 4; quad++) {
-        rows_fill(vload4(quad, owner + k), owners + 4 * quad PAIR_PASS);
-        rows_fill(vload4(quad, other + k), others + 4 * quad PAIR_PASS);
+        rows_fill_places(vload4(quad, owner + k), owners + 4 * quad PAIR_PASS);
+        rows_fill_places(vload4(quad, other + k), others + 4 * quad PAIR_PASS);
     }
     if (group + BLOCKS_AHEAD < launch->first_wall_group)
         pair_ask_ahead(k + BLOCKS_AHEAD * CLAST_BLOCK PAIR_PASS);
     VECTOR_LOOP
     for (int lane = 0; lane < CLAST_BLOCK; lane++)
-        pair_of_rows(launch, owners, others, lane, k + lane PAIR_PASS);
+        near[lane] = pair_is_near(launch, owners, others, lane);
+    for (int group = 0; group < TEAMS; group++) {
+        int any = PAIRS_ACT_APART;
+        for (int lane = TOGETHER * group; lane < TOGETHER * group + TOGETHER; lane++)
+            any |= near[lane];
+        near[group] = any;
+        for (int lane = TOGETHER * group; any && lane < TOGETHER * group + TOGETHER; lane += 4) {
+            rows_fill_rest(vload4(0, owner + k + lane), owners + lane PAIR_PASS);
+            rows_fill_rest(vload4(0, other + k + lane), others + lane PAIR_PASS);
+        }
+    }
+    for (int group = 0, end; group < TEAMS; group = end) {
+        for (end = group + 1; end < TEAMS && near[end] == near[group]; end++)
+            ;
+        if (near[group]) {
+            VECTOR_LOOP
+            for (int lane = TOGETHER * group; lane < TOGETHER * end; lane++)
+                pair_of_rows(launch, owners, others, lane, k + lane PAIR_PASS);
+        } else {
+            VECTOR_LOOP
+            for (int lane = TOGETHER * group; lane < TOGETHER * end; lane++)
+                pair_of_strangers(launch, owners, others, lane, k + lane PAIR_PASS);
+        }
+    }
 }
 
 INLINE void pair_wall_block(const clast_launch *launch, int group PAIR_DECLARE)

@@ -46,7 +46,8 @@ INLINE void sphere_load(const clast_launch *launch, int i, sphere *s PAIR_DECLAR
     s->temperature = TEMPERATURE_OF_BODY(i);
 }
 
-INLINE void contact_of_spheres(const clast_launch *launch, int i, int j, const sphere *s_i, const sphere *s_j, contact *c PAIR_DECLARE)
+/* `touching`: 0 where the two are known not to touch, so that all that an overlap brings about is left out. */
+INLINE void contact_of_spheres(const clast_launch *launch, int i, int j, const sphere *s_i, const sphere *s_j, const bool touching, contact *c PAIR_DECLARE)
 {
     apart3 way = periodic_nearest(launch, apart_of(s_j->position, s_i->position));
     vec3 d = apart_vector(way), u = sub(s_i->velocity, s_j->velocity), past = sub(s_i->past_velocity, s_j->past_velocity);
@@ -77,7 +78,7 @@ INLINE void contact_of_spheres(const clast_launch *launch, int i, int j, const s
     real inverse = R(1.0) / sqrt(apart ? d2 : R(1.0)), distance = d2 * inverse;
     real overlap = sphere_overlap(way, distance, radius_i, radius_j);
     c->gap = apart ? -overlap : R(1e30);
-    overlap = apart && overlap > R(0.0) ? overlap : R(0.0);
+    overlap = touching && apart && overlap > R(0.0) ? overlap : R(0.0);
     c->touch = overlap;
     c->overlap = motion_overlap(MOTION_GRAIN(i), MOTION_GRAIN(j), overlap);
     c->temperature_i = s_i->temperature;
@@ -103,7 +104,7 @@ INLINE void contact_of_grains(const clast_launch *launch, int k, contact *c PAIR
     sphere s_i, s_j;
     sphere_load(launch, i, &s_i PAIR_PASS);
     sphere_load(launch, j, &s_j PAIR_PASS);
-    contact_of_spheres(launch, i, j, &s_i, &s_j, c PAIR_PASS);
+    contact_of_spheres(launch, i, j, &s_i, &s_j, true, c PAIR_PASS);
 }
 
 INLINE void contact_of_wall(const clast_launch *launch, int k, contact *c, wall_touch *touch PAIR_DECLARE)

@@ -62,7 +62,7 @@ static void run(numbers *n)
     cl_int code;
     assert_int_equal(program_assemble(n->size == 4 ? "#define REAL_IS_FLOAT\n" : "", NULL, 0, getenv("CLAST_KERNELS"), &base, &why), STATUS_OK);
     assert_true(asprintf(&text, "%s\n%s", base, kernel_text) > 0);
-    if (program_build(d, text, "", &program, &why) != STATUS_OK)
+    if (program_build(d, text, &program, &why) != STATUS_OK)
         fail_msg("%s", why.text);
     cl_kernel kernel = clCreateKernel(program, "powers", &code);
     assert_int_equal(code, CL_SUCCESS);

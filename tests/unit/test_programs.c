@@ -537,7 +537,7 @@ static void test_shared_structs(void **state)
     cl_ulong result[PLACES];
     size_t one = 1;
     device *d = case_device();
-    MUST(program_build(d, text, "", &program, why));
+    MUST(program_build(d, text, &program, why));
     cl_kernel kernel = clCreateKernel(program, "shared_places", &code);
     assert_int_equal(code, CL_SUCCESS);
     cl_mem mem = clCreateBuffer(d->context, CL_MEM_READ_WRITE, sizeof result, NULL, &code);
