@@ -7,9 +7,10 @@
 /* LANES: numbers in the widest register of the device (host/live.c). */
 #define VECTOR_LOOP _Pragma("clang loop vectorize(assume_safety) vectorize_width(LANES)")
 #define BLOCKS_AHEAD 3
-/* Records that go through the laws together: most that stand in a table do not touch, and where none of these does, none needs to. */
-#define TOGETHER (LANES < 4 ? 4 : LANES)
-#define TEAMS (CLAST_BLOCK / TOGETHER)
+/* A lot: records that go through the laws together. In a loose bed most that stand in the table do not touch, and where none of a lot does, none needs
+ * to (PAIRS_ACT_APART: some law acts on two apart, or sums over steps; host/live.c). */
+#define LOT (LANES < 4 ? 4 : LANES)
+#define LOTS (CLAST_BLOCK / LOT)
 /* Rows of one of the two grains: numbers that are wanted with all their bits take EXACT_REALS rows. */
 #define ROW_POSITION 0
 #define ROW_RADIUS (3 * EXACT_REALS)
@@ -144,14 +145,23 @@ INLINE void pair_of_rows(const clast_launch *launch, const real *owners, const r
     PAIR_FROM_CONTACT(PAIR_STORE_STATE);
 }
 
+/* Of one whose rows hold nothing but its place. */
+INLINE void stranger_of_rows(const real *rows, int lane, sphere *s)
+{
+    s->position = ROW_PRECISE_POLAR3(rows, ROW_POSITION, lane);
+    s->radius = ROW_PRECISE(rows, ROW_RADIUS, lane);
+    s->mass = R(1.0);
+    s->velocity = s->past_velocity = s->spin = s->past_spin = v3(R(0.0), R(0.0), R(0.0));
+    s->temperature = R(0.0);
+}
+
 /* The same where the two do not touch and no law acts on them: of the laws nothing is left but that forces and histories are 0. */
 INLINE void pair_of_strangers(const clast_launch *launch, const real *owners, const real *others, int lane, int k PAIR_DECLARE)
 {
-    sphere s_i = {ROW_PRECISE_POLAR3(owners, ROW_POSITION, lane)}, s_j = {ROW_PRECISE_POLAR3(others, ROW_POSITION, lane)};
+    sphere s_i, s_j;
     contact c;
-    s_i.radius = ROW_PRECISE(owners, ROW_RADIUS, lane);
-    s_j.radius = ROW_PRECISE(others, ROW_RADIUS, lane);
-    s_i.mass = s_j.mass = R(1.0);
+    stranger_of_rows(owners, lane, &s_i);
+    stranger_of_rows(others, lane, &s_j);
     contact_of_spheres(launch, owner[k], other[k], &s_i, &s_j, false, &c PAIR_PASS);
     PAIR_FROM_CONTACT(PAIR_STORE_STATE);
 }
@@ -187,40 +197,46 @@ INLINE ulong8 widest(ulong8 x)
     return x + (ulong8)(1);
 }
 
+/* some[lot]: whether any two of a lot may touch. Only then are the rest of their rows filled. */
+INLINE void pair_fill_lots(const clast_launch *launch, int k, real *owners, real *others, int *some PAIR_DECLARE)
+{
+    int near[CLAST_BLOCK];
+    VECTOR_LOOP
+    for (int lane = 0; lane < CLAST_BLOCK; lane++)
+        near[lane] = pair_is_near(launch, owners, others, lane);
+    for (int lot = 0; lot < LOTS; lot++) {
+        some[lot] = PAIRS_ACT_APART;
+        for (int lane = LOT * lot; !PAIRS_ACT_APART && lane < LOT * (lot + 1); lane++)
+            some[lot] |= near[lane];
+        for (int lane = LOT * lot; some[lot] && lane < LOT * (lot + 1); lane += 4) {
+            rows_fill_rest(vload4(0, owner + k + lane), owners + lane PAIR_PASS);
+            rows_fill_rest(vload4(0, other + k + lane), others + lane PAIR_PASS);
+        }
+    }
+}
+
+/* Lots of one kind in a row go in one loop, so that a block in which all touch costs what it would without a look. */
 INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
 {
     real owners[ROWS_OF_GRAIN * CLAST_BLOCK], others[ROWS_OF_GRAIN * CLAST_BLOCK];
-    int k = (int)(widest((ulong8)((ulong)(CLAST_BLOCK * group))).s0 - 1);
-    int near[CLAST_BLOCK];
+    int k = (int)(widest((ulong8)((ulong)(CLAST_BLOCK * group))).s0 - 1), some[LOTS];
     for (int quad = 0; quad < CLAST_BLOCK / 4; quad++) {
         rows_fill_places(vload4(quad, owner + k), owners + 4 * quad PAIR_PASS);
         rows_fill_places(vload4(quad, other + k), others + 4 * quad PAIR_PASS);
     }
     if (group + BLOCKS_AHEAD < launch->first_wall_group)
         pair_ask_ahead(k + BLOCKS_AHEAD * CLAST_BLOCK PAIR_PASS);
-    VECTOR_LOOP
-    for (int lane = 0; lane < CLAST_BLOCK; lane++)
-        near[lane] = pair_is_near(launch, owners, others, lane);
-    for (int group = 0; group < TEAMS; group++) {
-        int any = PAIRS_ACT_APART;
-        for (int lane = TOGETHER * group; lane < TOGETHER * group + TOGETHER; lane++)
-            any |= near[lane];
-        near[group] = any;
-        for (int lane = TOGETHER * group; any && lane < TOGETHER * group + TOGETHER; lane += 4) {
-            rows_fill_rest(vload4(0, owner + k + lane), owners + lane PAIR_PASS);
-            rows_fill_rest(vload4(0, other + k + lane), others + lane PAIR_PASS);
-        }
-    }
-    for (int group = 0, end; group < TEAMS; group = end) {
-        for (end = group + 1; end < TEAMS && near[end] == near[group]; end++)
-            ;
-        if (near[group]) {
+    pair_fill_lots(launch, k, owners, others, some PAIR_PASS);
+    for (int lot = 0, end; lot < LOTS; lot = end) {
+        for (end = lot + 1; end < LOTS && (PAIRS_ACT_APART || some[end] == some[lot]);)
+            end++;
+        if (PAIRS_ACT_APART || some[lot]) {
             VECTOR_LOOP
-            for (int lane = TOGETHER * group; lane < TOGETHER * end; lane++)
+            for (int lane = LOT * lot; lane < LOT * end; lane++)
                 pair_of_rows(launch, owners, others, lane, k + lane PAIR_PASS);
         } else {
             VECTOR_LOOP
-            for (int lane = TOGETHER * group; lane < TOGETHER * end; lane++)
+            for (int lane = LOT * lot; lane < LOT * end; lane++)
                 pair_of_strangers(launch, owners, others, lane, k + lane PAIR_PASS);
         }
     }
