@@ -204,9 +204,10 @@ INLINE void pair_fill_lots(const clast_launch *launch, int k, real *owners, real
     VECTOR_LOOP
     for (int lane = 0; lane < CLAST_BLOCK; lane++)
         near[lane] = pair_is_near(launch, owners, others, lane);
+    const bool all = PAIRS_ACT_APART;
     for (int lot = 0; lot < LOTS; lot++) {
-        some[lot] = PAIRS_ACT_APART;
-        for (int lane = LOT * lot; !PAIRS_ACT_APART && lane < LOT * (lot + 1); lane++)
+        some[lot] = all;
+        for (int lane = LOT * lot; !all && lane < LOT * (lot + 1); lane++)
             some[lot] |= near[lane];
         for (int lane = LOT * lot; some[lot] && lane < LOT * (lot + 1); lane += 4) {
             rows_fill_rest(vload4(0, owner + k + lane), owners + lane PAIR_PASS);
@@ -220,6 +221,7 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
 {
     real owners[ROWS_OF_GRAIN * CLAST_BLOCK], others[ROWS_OF_GRAIN * CLAST_BLOCK];
     int k = (int)(widest((ulong8)((ulong)(CLAST_BLOCK * group))).s0 - 1), some[LOTS];
+    const bool all = PAIRS_ACT_APART;
     for (int quad = 0; quad < CLAST_BLOCK / 4; quad++) {
         rows_fill_places(vload4(quad, owner + k), owners + 4 * quad PAIR_PASS);
         rows_fill_places(vload4(quad, other + k), others + 4 * quad PAIR_PASS);
@@ -228,9 +230,9 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
         pair_ask_ahead(k + BLOCKS_AHEAD * CLAST_BLOCK PAIR_PASS);
     pair_fill_lots(launch, k, owners, others, some PAIR_PASS);
     for (int lot = 0, end; lot < LOTS; lot = end) {
-        for (end = lot + 1; end < LOTS && (PAIRS_ACT_APART || some[end] == some[lot]);)
+        for (end = lot + 1; end < LOTS && (all || some[end] == some[lot]);)
             end++;
-        if (PAIRS_ACT_APART || some[lot]) {
+        if (all || some[lot]) {
             VECTOR_LOOP
             for (int lane = LOT * lot; lane < LOT * end; lane++)
                 pair_of_rows(launch, owners, others, lane, k + lane PAIR_PASS);
