@@ -204,7 +204,7 @@ INLINE void pair_fill_lots(const clast_launch *launch, int k, real *owners, real
     VECTOR_LOOP
     for (int lane = 0; lane < CLAST_BLOCK; lane++)
         near[lane] = pair_is_near(launch, owners, others, lane);
-    const bool all = PAIRS_ACT_APART;
+    bool all = PAIRS_ACT_APART;
     for (int lot = 0; lot < LOTS; lot++) {
         some[lot] = all;
         for (int lane = LOT * lot; !all && lane < LOT * (lot + 1); lane++)
@@ -221,7 +221,7 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
 {
     real owners[ROWS_OF_GRAIN * CLAST_BLOCK], others[ROWS_OF_GRAIN * CLAST_BLOCK];
     int k = (int)(widest((ulong8)((ulong)(CLAST_BLOCK * group))).s0 - 1), some[LOTS];
-    const bool all = PAIRS_ACT_APART;
+    bool all = PAIRS_ACT_APART;
     for (int quad = 0; quad < CLAST_BLOCK / 4; quad++) {
         rows_fill_places(vload4(quad, owner + k), owners + 4 * quad PAIR_PASS);
         rows_fill_places(vload4(quad, other + k), others + 4 * quad PAIR_PASS);
