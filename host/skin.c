@@ -5,7 +5,7 @@
 
 /* The skin that balances the pairs it adds against the tables it saves, for grains that travel `used` a step (docs/performance.md): a step
  * costs about 1 + 2.7 s/r in a dense bed and less in a loose one, and with discs two thirds of that; a table about 10 steps, and in a small bed more,
- * since it is some fifty commands; and it lasts s/(2 used) steps. The factor leans to the side of few tables, since it is the fast and loose beds that
+ * since launches and waits count there; and it lasts s/(2 used) steps. The factor leans to the side of few tables, since it is the fast and loose beds that
  * need many. */
 static double best_skin(const simulation *sim, double used)
 {
