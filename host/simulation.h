@@ -99,14 +99,17 @@ typedef struct step_loop {
     cl_mem launches, team, phases, pieces; /* of the steps of a batch; of the plan */
     clast_launch *rows;
     int rows_held, pieces_held;
-    loop_manner manner;            /* of the batch under way */
+    loop_manner manner, best;      /* of the batch under way; of all but trials */
     int64_t batches;               /* so far, with this program */
-    int settling;                  /* batches that this manner still goes through before one is timed */
-    double pace[LOOP_MANNERS];     /* s a step and record of late; 0: not known */
+    int settling, timed;           /* batches that this manner still goes through before one is timed; those of a trial that were */
+    double pace;                   /* of the best, s a step and record of late; 0: not known */
+    double spent;                  /* s in batches */
+    double due[LOOP_MANNERS];      /* of them, when it is to be tried again */
+    int wins[LOOP_MANNERS];        /* trials in a row in which it was the faster */
+    double trial_begin;            /* of them, when the trial under way began */
+    double trial_work, timed_work, timed_seconds; /* of it: steps times records in all, and in batches that were timed */
     double table[LOOP_MANNERS];    /* s a table after such a batch, of late; 0: not known */
     double table_steps;            /* that a table lasts, of late */
-    int64_t due[LOOP_MANNERS];     /* batch in which it is to be tried again */
-    int64_t interval[LOOP_MANNERS];
 } step_loop;
 
 typedef struct step_limit {

@@ -3,10 +3,12 @@
  * On a GPU one work-group goes through the steps, which only small beds are faster in. On a CPU a step has phases (step_plan.c), and one of three goes
  * through them: a work-group alone; a team with a work-group for every core, which meet after every phase; or a launch a phase. A team wins on a
  * quiet machine and loses where others want the cores, since its members wait by looking. Nothing foretells that: results are the same to the
- * bit, so the batches of the run itself are timed, the fastest is taken, and the others are tried again from time to time. */
+ * bit, so the batches of the run itself are timed, the fastest is taken, and the others are tried again from time to time. What a step costs changes with
+ * what the grains do, so a trial is held against the batches just before it, and never against older ones. */
 #include "laws/laws.h"
 #include "simulation.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,11 +18,17 @@
 #define GROUPS_EACH 32
 /* Work-groups of a launch for each core, where pieces are shared. */
 #define SHARES_EACH 4
-/* Batches of a trial of a small bed before the one that is timed: the first ones fetch the grains from the caches of other cores. */
+/* Batches of a trial of a small bed before those that are timed, since the first ones fetch the grains from the caches of other cores; and those. */
 #define SETTLING_BATCHES 2
-/* Batches after which a manner that was slower is tried again: at first, and at most. */
-#define TRY_INTERVAL     16
-#define TRY_INTERVAL_MAX 1024
+#define TRIAL_BATCHES    3
+/* What a trial takes of the best's time where it wins; to be the best it wins so often in a row, or by far, since the grains may do something else
+ * meanwhile. */
+#define TRIAL_WINS        0.95
+#define TRIALS_TO_WIN     3
+#define TRIAL_WINS_BY_FAR 0.5
+/* Of the time, what trials of a manner may lose; and the least rest after one, in times that it took. */
+#define TRIAL_SHARE 0.005
+#define TRIAL_REST  16.0
 /* Beds of more records are not tried alone: they have work for every core, and long batches. */
 #define SMALL_BED_RECORDS 20000
 
@@ -101,48 +109,38 @@ loop_manner step_loop_table_manner(const simulation *sim)
 
 /* ---- the fastest manner ---- */
 
-/* Seconds a step, and of the tables between: who has gone through the steps has the grains in its caches, and a table costs more where two have. */
-static double cost(const simulation *sim, loop_manner m)
+/* Seconds a step at this pace, and of the tables between: who has gone through the steps has the grains in its caches, and a table costs more where
+ * two have. */
+static double cost(const simulation *sim, loop_manner m, double pace)
 {
     const step_loop *loop = &sim->loop;
     double table = loop->table[m];
     for (loop_manner other = LOOP_PHASES; other < LOOP_MANNERS && loop->table[m] <= 0.0; other++)
         if (loop->table[other] > 0.0 && (table <= 0.0 || loop->table[other] < table))
             table = loop->table[other];
-    return loop->pace[m] * (1.0 + (double)sim->table.record_count) + (loop->table_steps > 0.0 ? table / loop->table_steps : 0.0);
-}
-
-static loop_manner fastest(const simulation *sim)
-{
-    loop_manner best = LOOP_PHASES;
-    for (loop_manner m = LOOP_PHASES; m < LOOP_MANNERS; m++)
-        if (sim->loop.pace[m] > 0.0 && cost(sim, m) < cost(sim, best))
-            best = m;
-    return best;
+    return pace * (1.0 + (double)sim->table.record_count) + (loop->table_steps > 0.0 ? table / loop->table_steps : 0.0);
 }
 
 /* The first batch compiles, and is not timed. */
 static loop_manner choose_manner(const simulation *sim)
 {
     const step_loop *loop = &sim->loop;
-    loop_manner fixed = fixed_manner(sim), best = fastest(sim);
+    loop_manner fixed = fixed_manner(sim);
     if (fixed != LOOP_MANNERS)
         return fixed;
-    if (loop->settling > 0)
+    if (loop->settling > 0 || loop->timed > 0)
         return loop->manner;
-    if (loop->pace[LOOP_PHASES] <= 0.0)
-        return LOOP_PHASES;
-    for (loop_manner m = LOOP_PHASES; m < LOOP_MANNERS; m++)
-        if (m != best && loop->batches >= loop->due[m] && (m != LOOP_ALONE || is_small(sim)))
+    for (loop_manner m = LOOP_PHASES; m < LOOP_MANNERS && loop->pace > 0.0; m++)
+        if (m != loop->best && loop->spent >= loop->due[m] && (m != LOOP_ALONE || is_small(sim)))
             return m;
-    return best;
+    return loop->best;
 }
 
 const char *step_loop_name(const simulation *sim)
 {
     static const char *const name[LOOP_MANNERS] = {"phases", "team", "one group"};
     loop_manner fixed = fixed_manner(sim);
-    return step_loop_now(sim) ? name[fixed != LOOP_MANNERS ? fixed : fastest(sim)] : "two kernels";
+    return step_loop_now(sim) ? name[fixed != LOOP_MANNERS ? fixed : sim->loop.best] : "two kernels";
 }
 
 int step_loop_launches(const simulation *sim)
@@ -156,12 +154,13 @@ void step_loop_forget(simulation *sim)
 {
     step_loop *loop = &sim->loop;
     loop->batches = 0;
-    loop->settling = 0;
-    memset(loop->pace, 0, sizeof loop->pace);
+    loop->settling = loop->timed = 0;
+    loop->best = LOOP_PHASES;
+    loop->pace = loop->spent = 0.0;
+    memset(loop->due, 0, sizeof loop->due);
+    memset(loop->wins, 0, sizeof loop->wins);
     memset(loop->table, 0, sizeof loop->table);
     loop->table_steps = 0.0;
-    memset(loop->due, 0, sizeof loop->due);
-    memset(loop->interval, 0, sizeof loop->interval);
 }
 
 /* The mean of late, which begins with the first. */
@@ -170,25 +169,54 @@ static void follow(double *mean, double value)
     *mean = *mean > 0.0 ? *mean + 0.2 * (value - *mean) : value;
 }
 
+/* What a trial costs more than the best would have tells when the next may come. */
+static void end_trial(simulation *sim)
+{
+    step_loop *loop = &sim->loop;
+    loop_manner m = loop->manner;
+    double pace = loop->timed_seconds / loop->timed_work, took = loop->spent - loop->trial_begin, lost = took - loop->pace * loop->trial_work;
+    double ratio = cost(sim, m, pace) / cost(sim, loop->best, loop->pace);
+    loop->timed = 0;
+    loop->wins[m] = ratio < TRIAL_WINS ? loop->wins[m] + 1 : 0;
+    loop->due[m] = loop->spent + (loop->wins[m] > 0 ? TRIAL_REST * took : fmax(TRIAL_REST * took, lost / TRIAL_SHARE));
+    if (ratio < TRIAL_WINS_BY_FAR || loop->wins[m] >= TRIALS_TO_WIN) {
+        loop->due[loop->best] = loop->spent + TRIAL_REST * took;
+        loop->best = m;
+        loop->pace = pace;
+        memset(loop->wins, 0, sizeof loop->wins);
+    }
+}
+
 void step_loop_note(simulation *sim, int steps, double seconds)
 {
     step_loop *loop = &sim->loop;
-    loop_manner m = loop->manner, best = fastest(sim);
+    double work = (double)steps * (1.0 + (double)sim->table.record_count); /* their number changes between one trial and the next */
     if (loop->batches++ == 0 || steps <= 0)
         return;
+    loop->spent += seconds;
+    loop->trial_work += work;
     if (loop->settling > 0) {
         loop->settling--;
         return;
     }
-    /* of a record, since their number changes between one trial and the next */
-    double pace = seconds / ((double)steps * (1.0 + (double)sim->table.record_count));
-    if (m != best)
-        loop->pace[m] = 0.0;
-    follow(&loop->pace[m], pace);
-    bool late = m != best && loop->pace[best] > 0.0 && cost(sim, m) > cost(sim, best);
-    loop->interval[m] = late && loop->interval[m] > 0 ? 2 * loop->interval[m] : TRY_INTERVAL;
-    loop->interval[m] = loop->interval[m] < TRY_INTERVAL_MAX ? loop->interval[m] : TRY_INTERVAL_MAX;
-    loop->due[m] = loop->batches + loop->interval[m];
+    if (loop->manner == loop->best || fixed_manner(sim) != LOOP_MANNERS) {
+        follow(&loop->pace, seconds / work);
+        return;
+    }
+    loop->timed_work += work;
+    loop->timed_seconds += seconds;
+    if (++loop->timed >= (is_small(sim) ? TRIAL_BATCHES : 1))
+        end_trial(sim);
+}
+
+/* Batches of another manner than before: a trial, or the best again. */
+static void begin_manner(simulation *sim)
+{
+    step_loop *loop = &sim->loop;
+    loop->settling = is_small(sim) ? SETTLING_BATCHES : 0;
+    loop->timed = 0;
+    loop->trial_begin = loop->spent;
+    loop->trial_work = loop->timed_work = loop->timed_seconds = 0.0;
 }
 
 void step_loop_note_table(simulation *sim, int64_t lasted, double seconds)
@@ -267,7 +295,7 @@ status step_loop_enqueue(simulation *sim, int steps, failure *why)
     loop_manner before = loop->manner;
     loop->manner = choose_manner(sim);
     if (loop->manner != before)
-        loop->settling = is_small(sim) ? SETTLING_BATCHES : 0;
+        begin_manner(sim);
     int bond_step = bonds_step(sim, steps), most = loop->manner == LOOP_TEAM ? step_loop_members(sim) : 1, items = step_loop_items(sim);
     TRY(fit_rows(sim, steps, why));
     for (int s = 0; s < steps; s++) {
