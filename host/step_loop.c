@@ -21,8 +21,8 @@
 /* Batches of a trial of a small bed before those that are timed, since the first ones fetch the grains from the caches of other cores; and those. */
 #define SETTLING_BATCHES 2
 #define TRIAL_BATCHES    3
-/* What a trial takes of the best's time where it wins; to be the best it wins so often in a row, or by far, since the grains may do something else
- * meanwhile. */
+/* What a trial takes of the best's time where it wins; in a small bed it wins so often in a row before it is the best, or by far, since batches are
+ * short, and the grains may do something else meanwhile. */
 #define TRIAL_WINS        0.95
 #define TRIALS_TO_WIN     3
 #define TRIAL_WINS_BY_FAR 0.5
@@ -179,7 +179,7 @@ static void end_trial(simulation *sim)
     loop->timed = 0;
     loop->wins[m] = ratio < TRIAL_WINS ? loop->wins[m] + 1 : 0;
     loop->due[m] = loop->spent + (loop->wins[m] > 0 ? TRIAL_REST * took : fmax(TRIAL_REST * took, lost / TRIAL_SHARE));
-    if (ratio < TRIAL_WINS_BY_FAR || loop->wins[m] >= TRIALS_TO_WIN) {
+    if (ratio < TRIAL_WINS_BY_FAR || loop->wins[m] >= (is_small(sim) ? TRIALS_TO_WIN : 1)) {
         loop->due[loop->best] = loop->spent + TRIAL_REST * took;
         loop->best = m;
         loop->pace = pace;

@@ -7,6 +7,8 @@
 /* LANES: numbers in the widest register of the device (host/live.c). */
 #define VECTOR_LOOP _Pragma("clang loop vectorize(assume_safety) vectorize_width(LANES)")
 #define BLOCKS_AHEAD 3
+/* Work-groups of records of beds that do not fit the caches next to a core: only there does asking pay. */
+#define BLOCKS_TO_ASK 128
 /* A lot: records that go through the laws together. In a loose bed most that stand in the table do not touch, and where none of a lot does, none needs
  * to (PAIRS_ACT_APART: some law acts on two apart, or sums over steps; host/live.c). */
 #define LOT (LANES < 4 ? 4 : LANES)
@@ -226,7 +228,7 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
         rows_fill_places(vload4(quad, owner + k), owners + 4 * quad PAIR_PASS);
         rows_fill_places(vload4(quad, other + k), others + 4 * quad PAIR_PASS);
     }
-    if (group + BLOCKS_AHEAD < launch->first_wall_group)
+    if (launch->first_wall_group >= BLOCKS_TO_ASK && group + BLOCKS_AHEAD < launch->first_wall_group)
         pair_ask_ahead(k + BLOCKS_AHEAD * CLAST_BLOCK PAIR_PASS);
     pair_fill_lots(launch, k, owners, others, some PAIR_PASS);
     for (int lot = 0, end; lot < LOTS; lot = end) {
@@ -324,7 +326,7 @@ INLINE void moving_of_rows(const real *rows, int lane, moving *m)
  * two units before are advanced. */
 INLINE void slots_ask_ahead(const clast_launch *launch, int first PARTICLE_DECLARE)
 {
-    if (first >= launch->particle_count)
+    if (first >= launch->particle_count || launch->first_wall_group < BLOCKS_TO_ASK)
         return;
     uint end = slot_offset[first / CLAST_BLOCK + 1];
     for (uint s = slot_offset[first / CLAST_BLOCK]; s < end; s += CLAST_BLOCK)

@@ -15,6 +15,8 @@ INLINE uint table_add(bool shared, __global uint *count, uint more)
 /* The cell along one direction, beyond the last one the first again. In whole numbers: pocl's floor() and a division take longer than all the rest. */
 INLINE int table_wrap(real t, int cells)
 {
+    if (!is_number(t))
+        return 0;
     if (t >= R(0.0) && t < (real)cells)
         return (int)t;
     if (!(fabs(t) < R(1e9)))
