@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 /* A product with what is always 0 may be left out: no sign of a 0 counts, and no number is infinite or none but in a run that a guard will stop, which
- * looks at bits (is_number). */
+ * looks at bits (kernels/stage/observe.cl). */
 static const char build_options[] = "-cl-std=CL1.2 -cl-kernel-arg-info -cl-no-signed-zeros -cl-finite-math-only";
 
 static status read_kernel_file(const char *directory, const char *name, char **text, failure *why)

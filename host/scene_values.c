@@ -402,6 +402,14 @@ static status check_rectangle(reader *r, int node, const wall *w)
     if (r->scene->dimensions == 2 && !planar)
         return document_fail(r->document, corners, r->why,
                              "with `dimensions: 2` one side of a rectangle must lie along z, so that its normal lies in the plane");
+    double low = w->corners_m[0][2], high = low;
+    for (int k = 1; k < 3; k++) {
+        low = fmin(low, w->corners_m[k][2]);
+        high = fmax(high, w->corners_m[k][2]);
+    }
+    if (r->scene->dimensions == 2 && (low > 0.0 || high < 0.0))
+        return document_fail(r->document, corners, r->why,
+                             "with `dimensions: 2` a rectangle must reach the plane z = 0, in which the grains are; it runs from z = %g to %g", low, high);
     return STATUS_OK;
 }
 

@@ -356,6 +356,8 @@ static status load_run(simulation *sim, const bundle *in, const char *path, int6
                     path, mixed ? "mixed" : "double", sim->mixed ? "mixed" : "double");
     TRY(bundle_get(in, path, "run/origin", BUNDLE_F64, 3, 1, &origin, why));
     memcpy(sim->origin, origin->data, sizeof sim->origin);
+    if (sim->all.law[SLOT_DIMENSIONS])
+        sim->origin[2] = 0.0;
     if (sim->all.law[SLOT_SOURCE])
         TRY(load_number(in, path, "run/delivered", BUNDLE_F64, &sim->beams.delivered, NULL, why));
     if (*stage < 0 || *stage >= sim->scene->stage_count)

@@ -130,7 +130,8 @@ static loop_manner choose_manner(const simulation *sim)
         return fixed;
     if (loop->settling > 0 || loop->timed > 0)
         return loop->manner;
-    for (loop_manner m = LOOP_PHASES; m < LOOP_MANNERS && loop->pace > 0.0; m++)
+    bool may_try = loop->pace > 0.0 && loop->manner == loop->best; /* one trial, and the best again */
+    for (loop_manner m = LOOP_PHASES; m < LOOP_MANNERS && may_try; m++)
         if (m != loop->best && loop->spent >= loop->due[m] && (m != LOOP_ALONE || is_small(sim)))
             return m;
     return loop->best;
@@ -199,7 +200,9 @@ void step_loop_note(simulation *sim, int steps, double seconds)
         loop->settling--;
         return;
     }
-    if (loop->manner == loop->best || fixed_manner(sim) != LOOP_MANNERS) {
+    if (fixed_manner(sim) != LOOP_MANNERS)
+        return;
+    if (loop->manner == loop->best) {
         follow(&loop->pace, seconds / work);
         return;
     }

@@ -428,6 +428,8 @@ status table_build(simulation *sim, bool drop_outside, failure *why)
     double start = clock_seconds();
     int old_wall_base = t->old_wall_base = t->wall_base;
     int64_t old_stride = t->record_stride, old_capacity = t->record_capacity;
+    t->list.count = t->list.memories = 0; /* what an error has left */
+    t->list.launched = false;
     TRY(bonds_before(sim, why));
     TRY(table_growth(sim, &t->growth, why));
     set_grid(sim, drop_outside);

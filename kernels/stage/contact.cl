@@ -46,7 +46,7 @@ INLINE void sphere_load(const clast_launch *launch, int i, sphere *s PAIR_DECLAR
     s->temperature = TEMPERATURE_OF_BODY(i);
 }
 
-/* `touching`: 0 where the two are known not to touch, so that all that an overlap brings about is left out. */
+/* `touching`: false where the two are known not to touch, so that all that an overlap brings about is left out. */
 INLINE void contact_of_spheres(const clast_launch *launch, int i, int j, const sphere *s_i, const sphere *s_j, const bool touching, contact *c PAIR_DECLARE)
 {
     apart3 way = periodic_nearest(launch, apart_of(s_j->position, s_i->position));

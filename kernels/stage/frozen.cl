@@ -135,8 +135,8 @@ __kernel void heat_frozen_findings(const clast_launch launch, __global const rea
     precise hot = precise_from(R(-1e30)), cold = hot;
     for (int i = first; i < end; i++) {
         precise t = precise_add(TEMPERATURE_PRECISE(i), precise_from(rises[i]));
-        real off = fabs(error[i]);
-        worst = off <= worst ? worst : (off >= R(0.0) ? off : R(1e30));
+        real off = is_number(error[i]) ? fabs(error[i]) : R(1e30);
+        worst = off > worst ? off : worst;
         fastest = rates[i] <= fastest ? fastest : rates[i];
         hot = precise_max(hot, t);
         cold = precise_max(cold, precise_sub(precise_from(R(0.0)), t));

@@ -320,8 +320,13 @@ __kernel void limit_expected(__global const real *restrict contact_constants, __
 }
 
 /* Guards, per chunk: first grain that is not a number, that moves too far in a step, that has left the domain (sorted indices; -1: none),
- * and the largest speed squared. Numbers are tested by their bits (is_number), so that no compiler option can lose the test. */
+ * and the largest speed squared. Programs are built as if every number were one; so what is read is tested, by its bits, and not what comes of it. */
 #define GUARD_FINDINGS 4
+
+INLINE bool are_numbers(vec3 a)
+{
+    return is_number(a.x) && is_number(a.y) && is_number(a.z);
+}
 
 BODY void guard_particles_unit(int chunk, const clast_launch *launch, __global const exact *restrict position,
                                __global const exact *restrict velocity, __global exact *restrict partial, const int bounded)
@@ -331,9 +336,9 @@ BODY void guard_particles_unit(int chunk, const clast_launch *launch, __global c
     real most = R(0.0);
     vec3 low = from3(launch->low), high = from3(launch->high), common = POLAR3(launch->drift); /* of velocity here */
     for (int i = first; i < end; i++) {
-        vec3 x = GRAIN_POLAR3(position, i), v = sub(GRAIN_POLAR3(velocity, i), common);
+        vec3 x = GRAIN_POLAR3(position, i), moves = GRAIN_POLAR3(velocity, i), v = sub(moves, common);
         real speed2 = dot3(v, v);
-        if (!is_number(x.x + x.y + x.z) || !is_number(speed2)) {
+        if (!are_numbers(x) || !are_numbers(moves)) {
             if (bad < 0)
                 bad = i;
         } else {

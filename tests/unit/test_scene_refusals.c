@@ -207,6 +207,7 @@ static void test_bad_flat_scenes(void **state)
         {"shape: plane, point_m: [0, 0, 0], normal: [0, 1, 0]", "shape: cone, axis_point_m: [0, 0, 0], axis: [0, 0, 1], radius_m: [1, 0], length_m: 2",
          "a cone's normals leave the x-y plane"},
         {"[0, 0, 1]]", "[-1, 1, 0]]", "one side of a rectangle must lie along z"},
+        {"[[0, 0, 0], [1, 1, 0], [0, 0, 1]]", "[[0, 0, 1], [1, 1, 1], [0, 0, 2]]", "a rectangle must reach the plane z = 0, in which the grains are; it runs from z = 1 to 2"},
         {"region: {low_m: [0, 0, 0]", "region: {low_m: [0, 0, -1]", "a region lies at z = 0"},
         {"effects:", "domain: {low_m: [0, 0, 0], high_m: [1, 1, 1], periodic: [z]}\neffects:", "the domain cannot repeat along z"},
     };
