@@ -280,6 +280,9 @@ cl_kernel launch_kernel(const simulation *sim, const char *name)
     return NULL;
 }
 
+/* Skins wider than this share of the mean radius are those of beds that move fast; a bed at rest takes a fifth at most (host/skin.c). */
+#define LOOSE_SKIN 0.25
+
 clast_launch launch_values(const simulation *sim)
 {
     const domain *d = &sim->scene->domain;
@@ -295,6 +298,7 @@ clast_launch launch_values(const simulation *sim)
         .particle_count = (clast_i32)sim->count,
         .first_wall_group = sim->table.wall_base / sim->block,
         .first_wall_place = sim->table.wall_base,
+        .loose = sim->table.skin > LOOSE_SKIN * sim->mean_radius,
         .face_count = sim->face_count,
         .mover_count = sim->mover_count,
         .mixed = sim->mixed,

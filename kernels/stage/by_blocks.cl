@@ -199,14 +199,16 @@ INLINE ulong8 widest(ulong8 x)
     return x + (ulong8)(1);
 }
 
-/* some[lot]: whether any two of a lot may touch. Only then are the rest of their rows filled. */
+/* some[lot]: whether any two of a lot may touch, or whether nobody is to look. Only then are the rest of their rows filled. */
 INLINE void pair_fill_lots(const clast_launch *launch, int k, real *owners, real *others, int *some PAIR_DECLARE)
 {
     int near[CLAST_BLOCK];
-    VECTOR_LOOP
-    for (int lane = 0; lane < CLAST_BLOCK; lane++)
-        near[lane] = pair_is_near(launch, owners, others, lane);
-    bool all = PAIRS_ACT_APART;
+    bool all = PAIRS_ACT_APART || !launch->loose;
+    if (!all) {
+        VECTOR_LOOP
+        for (int lane = 0; lane < CLAST_BLOCK; lane++)
+            near[lane] = pair_is_near(launch, owners, others, lane);
+    }
     for (int lot = 0; lot < LOTS; lot++) {
         some[lot] = all;
         for (int lane = LOT * lot; !all && lane < LOT * (lot + 1); lane++)
@@ -223,7 +225,7 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
 {
     real owners[ROWS_OF_GRAIN * CLAST_BLOCK], others[ROWS_OF_GRAIN * CLAST_BLOCK];
     int k = (int)(widest((ulong8)((ulong)(CLAST_BLOCK * group))).s0 - 1), some[LOTS];
-    bool all = PAIRS_ACT_APART;
+    bool all = PAIRS_ACT_APART || !launch->loose;
     for (int quad = 0; quad < CLAST_BLOCK / 4; quad++) {
         rows_fill_places(vload4(quad, owner + k), owners + 4 * quad PAIR_PASS);
         rows_fill_places(vload4(quad, other + k), others + 4 * quad PAIR_PASS);
