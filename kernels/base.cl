@@ -164,7 +164,6 @@ INLINE real power_of(real x, real y)
 
 /* Fields of grains keep the components of one grain together: a pair reads a grain that stands anywhere, and finds it in one or two cache
  * lines (docs/performance.md). They are exact, and read as reals or with all their bits. */
-#define GRAIN3(field, i) from3((field) + 3 * (size_t)(i))
 #define PRECISE_GRAIN3(field, i) PRECISE3((field) + 3 * (size_t)(i))
 #define SET_GRAIN3(field, i, v)                              \
     do {                                                     \
