@@ -46,6 +46,7 @@
 #define ADHESION_RADIUS_QUARTERS 0
 #endif
 #define BOND_PAIR_FIELDS(READ, WRITE) WRITE(real, bonded)
+#define BOND_ASK_FOR(launch, k) RECORDS_ASK_FOR(launch, bonded, 1, k)
 #define BOND_LOAD(launch, k, s)                  \
     do {                                         \
         (s).count = bonded[k];                   \

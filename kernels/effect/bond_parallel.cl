@@ -26,6 +26,13 @@
 #define BEAM_LIQUID         PARALLEL_LIQUID
 #define BEAM_ALONE          0
 #define BOND_PAIR_FIELDS(READ, WRITE) WRITE(real, bonded) WRITE(real, bond_gap) WRITE(real, bond_shear) WRITE(real, bond_turn)
+#define BOND_ASK_FOR(launch, k)                   \
+    do {                                         \
+        RECORDS_ASK_FOR(launch, bonded, 1, k);     \
+        RECORDS_ASK_FOR(launch, bond_gap, 1, k);   \
+        RECORDS_ASK_FOR(launch, bond_shear, 3, k); \
+        RECORDS_ASK_FOR(launch, bond_turn, 3, k);  \
+    } while (0)
 #define BOND_LOAD(launch, k, s)                                          \
     do {                                                                 \
         (s).count = bonded[k];                                           \

@@ -36,6 +36,15 @@
 #define BOND_PAIR_FIELDS(READ, WRITE)                                                              \
     WRITE(real, bonded) WRITE(real, bond_gap) WRITE(real, bond_shear) WRITE(real, bond_turn)       \
     WRITE(real, neck_growth) WRITE(real, neck_growth_low)
+#define BOND_ASK_FOR(launch, k)                        \
+    do {                                              \
+        RECORDS_ASK_FOR(launch, bonded, 1, k);          \
+        RECORDS_ASK_FOR(launch, bond_gap, 1, k);        \
+        RECORDS_ASK_FOR(launch, bond_shear, 3, k);      \
+        RECORDS_ASK_FOR(launch, bond_turn, 3, k);       \
+        RECORDS_ASK_FOR(launch, neck_growth, 1, k);     \
+        RECORDS_ASK_FOR(launch, neck_growth_low, 1, k); \
+    } while (0)
 #define BOND_LOAD(launch, k, s)                                          \
     do {                                                                 \
         (s).count = bonded[k];                                           \

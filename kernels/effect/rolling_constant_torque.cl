@@ -6,6 +6,7 @@
 #define ROLLING_TWIST R(1.0)
 #endif
 #define ROLLING_PAIR_FIELDS(READ, WRITE)
+#define ROLLING_ASK_FOR(launch, k)
 #define ROLLING_LOAD(launch, k, s) (s).unused = 0
 #define ROLLING_STORE(launch, k, s)
 

@@ -12,6 +12,7 @@
 #define ROLLING_TWIST R(1.0)
 #endif
 #define ROLLING_PAIR_FIELDS(READ, WRITE) WRITE(real, rolling_spring)
+#define ROLLING_ASK_FOR(launch, k) RECORDS_ASK_FOR(launch, rolling_spring, 3, k)
 #define ROLLING_LOAD(launch, k, s) (s).spring = LOAD_AXIAL3(rolling_spring, (launch)->record_stride, k)
 #define ROLLING_STORE(launch, k, s) STORE_AXIAL3(rolling_spring, (launch)->record_stride, k, (s).spring)
 

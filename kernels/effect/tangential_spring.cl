@@ -29,6 +29,7 @@ INLINE vec3 spring_return(const contact *c, real compliance, real damping, real 
 }
 
 #define TANGENTIAL_PAIR_FIELDS(READ, WRITE) WRITE(real, tangential_spring)
+#define TANGENTIAL_ASK_FOR(launch, k) RECORDS_ASK_FOR(launch, tangential_spring, 3, k)
 #define TANGENTIAL_LOAD(launch, k, s) (s).spring = LOAD_POLAR3(tangential_spring, (launch)->record_stride, k)
 #define TANGENTIAL_STORE(launch, k, s) STORE_POLAR3(tangential_spring, (launch)->record_stride, k, (s).spring)
 

@@ -1,5 +1,6 @@
 /* bond: grains do not bond. */
 #define BOND_PAIR_FIELDS(READ, WRITE)
+#define BOND_ASK_FOR(launch, k)
 #define BOND_LOAD(launch, k, s) (s).unused = 0
 #define BOND_STORE(launch, k, s)
 

@@ -1,5 +1,6 @@
 /* rolling: no rolling resistance. */
 #define ROLLING_PAIR_FIELDS(READ, WRITE)
+#define ROLLING_ASK_FOR(launch, k)
 #define ROLLING_LOAD(launch, k, s) (s).unused = 0
 #define ROLLING_STORE(launch, k, s)
 

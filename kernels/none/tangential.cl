@@ -1,5 +1,6 @@
 /* tangential: no friction. */
 #define TANGENTIAL_PAIR_FIELDS(READ, WRITE)
+#define TANGENTIAL_ASK_FOR(launch, k)
 #define TANGENTIAL_LOAD(launch, k, s) (s).unused = 0
 #define TANGENTIAL_STORE(launch, k, s)
 #ifndef LEVER_ARM_SHRINKS

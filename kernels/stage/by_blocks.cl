@@ -7,6 +7,7 @@
 /* LANES: numbers in the widest register of the device (host/live.c). */
 #define VECTOR_LOOP _Pragma("clang loop vectorize(assume_safety) vectorize_width(LANES)")
 #define BLOCKS_AHEAD 3
+#define RECORDS_AHEAD 2
 /* Work-groups of records of beds that do not fit the caches next to a core: only there does asking pay. */
 #define BLOCKS_TO_ASK 128
 /* A lot: records that go through the laws together. In a loose bed most that stand in the table do not touch, and where none of a lot does, none needs
@@ -179,17 +180,38 @@ INLINE int pair_is_near(const clast_launch *launch, const real *owners, const re
 
 /* Pocl's prefetch() does nothing. */
 #define ASK_FOR(address) __builtin_prefetch((const void *)(size_t)(address), 0, 2)
-INLINE void pair_ask_ahead(int k PAIR_DECLARE)
+#define ASK_TO_CHANGE(address) __builtin_prefetch((const void *)(size_t)(address), 1, 3)
+
+/* Grains of a block of records to come. */
+INLINE void grains_ask_ahead(__global const int *which, int k PAIR_DECLARE)
 {
     for (int lane = 0; lane < CLAST_BLOCK; lane++) {
-        size_t j = other[k + lane];
-        ASK_FOR(position + 3 * j);
-        ASK_FOR(velocity + 3 * j);
-        ASK_FOR(radius + j);
-        ASK_FOR(mass + j);
-        ROTATION_ASK_FOR(j);
-        INTEGRATOR_ASK_FOR(j);
-        TEMPERATURE_ASK_FOR(j);
+        size_t i = which[k + lane];
+        ASK_FOR(position + 3 * i);
+        ASK_FOR(velocity + 3 * i);
+        ASK_FOR(radius + i);
+        ASK_FOR(mass + i);
+        ROTATION_ASK_FOR(i);
+        INTEGRATOR_ASK_FOR(i);
+        TEMPERATURE_ASK_FOR(i);
+    }
+}
+
+/* What a block of records to come keeps, a component of a field at a time: there are more of them than rows a processor follows, and each ends at
+ * every page. The names of its grains are asked for as far ahead again as these wait for them. */
+#define RECORDS_ASK_FOR(launch, field, components, k)                                        \
+    for (int c = 0; c < (components); c++)                                                  \
+        for (int lane = 0; lane < CLAST_BLOCK; lane += LINE_REALS)                          \
+    ASK_TO_CHANGE(&AT(field, (launch)->record_stride, c, (k) + lane))
+#define LINE_REALS (64 / (int)sizeof(real))
+INLINE void records_ask_ahead(const clast_launch *launch, int k, int names PAIR_DECLARE)
+{
+    BOND_ASK_FOR(launch, k);
+    TANGENTIAL_ASK_FOR(launch, k);
+    ROLLING_ASK_FOR(launch, k);
+    for (int lane = 0; lane < CLAST_BLOCK; lane += 64 / (int)sizeof(int)) {
+        ASK_FOR(owner + names + lane);
+        ASK_FOR(other + names + lane);
     }
 }
 
@@ -230,8 +252,10 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
         rows_fill_places(vload4(quad, owner + k), owners + 4 * quad PAIR_PASS);
         rows_fill_places(vload4(quad, other + k), others + 4 * quad PAIR_PASS);
     }
-    if (launch->first_wall_group >= BLOCKS_TO_ASK && group + BLOCKS_AHEAD < launch->first_wall_group)
-        pair_ask_ahead(k + BLOCKS_AHEAD * CLAST_BLOCK PAIR_PASS);
+    if (launch->first_wall_group >= BLOCKS_TO_ASK && group + BLOCKS_AHEAD < launch->first_wall_group) {
+        grains_ask_ahead(other, k + BLOCKS_AHEAD * CLAST_BLOCK PAIR_PASS);
+        records_ask_ahead(launch, k + RECORDS_AHEAD * CLAST_BLOCK, k + (BLOCKS_AHEAD + RECORDS_AHEAD) * CLAST_BLOCK PAIR_PASS);
+    }
     pair_fill_lots(launch, k, owners, others, some PAIR_PASS);
     for (int lot = 0, end; lot < LOTS; lot = end) {
         for (end = lot + 1; end < LOTS && (all || some[end] == some[lot]);)
@@ -248,8 +272,14 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
     }
 }
 
-INLINE void pair_wall_block(const clast_launch *launch, int group PAIR_DECLARE)
+/* Walls' records come first in a step, when no grain has been looked at for long. The last block asks for its own once more. */
+INLINE void pair_wall_block(const clast_launch *launch, int group, bool last PAIR_DECLARE)
 {
+    int next = last ? group : group + 1;
+    if (launch->first_wall_group >= BLOCKS_TO_ASK) {
+        grains_ask_ahead(owner, CLAST_BLOCK * next PAIR_PASS);
+        records_ask_ahead(launch, CLAST_BLOCK * next, CLAST_BLOCK * next PAIR_PASS);
+    }
     for (int lane = 0; lane < CLAST_BLOCK; lane++)
         pair_of_wall(launch, CLAST_BLOCK * group + lane PAIR_PASS);
 }
@@ -262,7 +292,7 @@ BODY void pair_blocks(const clast_launch *given, const clast_launch *for_walls, 
         if (group < launch->first_wall_group)
             pair_block(launch, group PAIR_PASS);
         else
-            pair_wall_block(for_walls, group PAIR_PASS);
+            pair_wall_block(for_walls, group, group + 1 == launch->first_group + to PAIR_PASS);
 }
 
 __kernel void pair_stage(const clast_launch launch, __global const clast_control *restrict control PAIR_DECLARE)
