@@ -31,6 +31,7 @@ static const stage_list stage_lists[] = {
     {"limit_records", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"pair_catch_up", {"owner", "other", "position", "velocity", "radius", "mass", "contact_constants", "force"}, LIST_PAIR},
     {"particle_stage", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
+    {"particle_pack", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"particle_synchronise", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"stiffness_rate", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
     {"heat_limit", {"slot_offset", "slots", "force", "radius", "mass", "position", "velocity", "built_position"}, LIST_PARTICLE},
@@ -60,9 +61,9 @@ static const stage_list stage_lists[] = {
 /* The order in which PAIR_FIELDS and PARTICLE_FIELDS name the slots. */
 static const slot_id pair_slots[] = {SLOT_TABLES, SLOT_COMPOSITION, SLOT_MOTION, SLOT_ROTATION, SLOT_BONDING, SLOT_BOND, SLOT_COHESION,
                                      SLOT_SLIP,        SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_DISSIPATION, SLOT_DISSIPATION_HEAT, SLOT_LEDGER, SLOT_WALLS, SLOT_TEMPERATURE, SLOT_MODULUS, SLOT_SOFTENING, SLOT_EXPANSION, SLOT_CONDUCTIVITY, SLOT_CONDUCTION, SLOT_WALL_HEAT,
-                                     SLOT_INTEGRATOR};
+                                     SLOT_INTEGRATOR, SLOT_PACKED};
 static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENTATION, SLOT_TEMPERATURE, SLOT_SUBSTANCE, SLOT_TABLES, SLOT_CONDUCTIVITY, SLOT_RADIUS, SLOT_EXPANSION, SLOT_ENVIRONMENT,
-                                         SLOT_CONDUCTION, SLOT_SOURCE, SLOT_HEAT_STEPS, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY, SLOT_MODULUS, SLOT_DISSIPATION, SLOT_DISSIPATION_HEAT, SLOT_LEDGER, SLOT_INTEGRATOR};
+                                         SLOT_CONDUCTION, SLOT_SOURCE, SLOT_HEAT_STEPS, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY, SLOT_MODULUS, SLOT_DISSIPATION, SLOT_DISSIPATION_HEAT, SLOT_LEDGER, SLOT_INTEGRATOR, SLOT_PACKED};
 
 int launch_argument_names(const live_laws *live, const char *kernel, const char **names, int max)
 {
@@ -157,6 +158,8 @@ status launch_bind_stages(simulation *sim, failure *why)
     for (size_t k = 0; k < sizeof others / sizeof *others; k++)
         TRY(launch_bind(sim, others[k], 1, why));
     TRY(step_loop_bind(sim, why));
+    if (sim->live.law[SLOT_PACKED])
+        TRY(launch_bind(sim, "particle_pack", 1, why));
     if (!live_keeps_half_steps(&sim->live))
         return STATUS_OK;
     TRY(launch_bind(sim, "pair_catch_up", 1, why));
@@ -186,6 +189,8 @@ static bool has_kernel(const simulation *sim, const char *name)
         return sim->live.blocks;
     if (strcmp(name, "particle_synchronise") == 0 || strcmp(name, "pair_catch_up") == 0)
         return live_keeps_half_steps(&sim->live);
+    if (strcmp(name, "particle_pack") == 0)
+        return sim->live.law[SLOT_PACKED] != NULL;
     if (strcmp(name, "heat_ahead") == 0)
         return live_keeps_half_steps(&sim->live) && sim->live.law[SLOT_DISSIPATION_HEAT];
     if (strcmp(name, "heat_flush") == 0)
@@ -232,7 +237,7 @@ status launch_open(simulation *sim, failure *why)
         files[count++] = "stage/step_loop.cl";
     TRY(open_program(sim, constants, files, count, &sim->program, why));
     TRY(open_program(sim, table_constants, table_files, live_table_files(&sim->live, table_files), &sim->table_program, why));
-    static const char *const names[] = {"pair_stage",       "pair_probe",      "particle_stage",    "scan_chunks",       "scan_sums",
+    static const char *const names[] = {"pair_stage",       "pair_probe",      "particle_stage",  "particle_pack",    "scan_chunks",       "scan_sums",
                                         "scan_write",       "scan_whole",       "table_bin",       "table_order",       "table_order_cells", "table_permute",
                                         "table_count",    "table_fill",        "table_pad",         "table_widths", "table_totals",
                                         "table_slots",      "table_sort_slots", "table_match",      "table_carry",       "table_where",       "table_travel",

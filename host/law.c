@@ -31,6 +31,7 @@ static const struct {
     [SLOT_RADIATION] = {"radiation", true},      [SLOT_SOURCE] = {"source", true},         [SLOT_HEAT_GENERATION] = {"heat_generation", true},
     [SLOT_THERMAL_GROUPS] = {"thermal_groups", false}, [SLOT_HEAT_TALLY] = {"heat_tally", false},
     [SLOT_BODY] = {"body", true},                [SLOT_ORIENTATION] = {"orientation", false}, [SLOT_INTEGRATOR] = {"integrator", false},
+    [SLOT_PACKED] = {"packed", false},
 };
 
 const char *slot_name(slot_id slot)

@@ -45,6 +45,7 @@ typedef enum slot_id {
     SLOT_HEAT_TALLY,     /* derived: heat by path, where an observable asks for it */
     SLOT_ORIENTATION, /* derived: quaternions, where an output asks for them */
     SLOT_INTEGRATOR,
+    SLOT_PACKED, /* derived: what pairs read of a grain once more in one line of a cache */
     SLOT_COUNT
 } slot_id;
 

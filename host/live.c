@@ -187,6 +187,11 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         derive_heat(scene, out);
 }
 
+void live_pack(live_laws *all)
+{
+    all->law[SLOT_PACKED] = all->blocks && all->law[SLOT_PRECISION] ? &law_packed_grains : NULL;
+}
+
 void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, live_laws *out)
 {
     *out = *all;
@@ -232,6 +237,7 @@ static const char *none_file(slot_id slot)
         [SLOT_RADIUS] = "none/radius.cl",           [SLOT_EXPANSION] = "none/expansion.cl",
         [SLOT_DISSIPATION] = "none/dissipation.cl", [SLOT_LEDGER] = "none/ledger.cl",           [SLOT_DISSIPATION_HEAT] = "none/dissipation_heat.cl",
         [SLOT_BODY] = "none/body.cl",               [SLOT_ORIENTATION] = "none/orientation.cl", [SLOT_INTEGRATOR] = NULL,
+        [SLOT_PACKED] = "none/packed.cl",
     };
     return files[slot];
 }
@@ -258,8 +264,8 @@ int live_files(const live_laws *live, const char **files, int max)
             files[count++] = l->more_files[f];
     }
     for (size_t s = 0; s < sizeof stages / sizeof *stages; s++) {
-        if (!stages[s] && live->blocks && count < max)
-            files[count++] = "stage/team.cl";
+        for (int f = 0; !stages[s] && live->blocks && f < 3 && count < max; f++)
+            files[count++] = f == 0 ? "stage/team.cl" : f == 1 ? "stage/rows.cl" : live->law[SLOT_PACKED] ? "stage/rows_packed.cl" : "stage/rows_gathered.cl";
         if (count < max)
             files[count++] = stages[s] ? stages[s] : live->blocks ? "stage/by_blocks.cl" : "stage/by_items.cl";
     }

@@ -179,7 +179,7 @@ static uint64_t widest_field(const simulation *sim)
     uint64_t widest = 0;
     for (int f = 0; f < sim->field_count; f++) {
         uint64_t bytes = field_bytes(sim, sim->field[f].field);
-        if (sim->field[f].field->extent == PER_PARTICLE && bytes > widest)
+        if (sim->field[f].field->extent == PER_PARTICLE && sim->field[f].field->role == FIELD_STATE && bytes > widest)
             widest = bytes;
     }
     return widest;
@@ -251,6 +251,7 @@ status simulation_create(const scene *scene, const bed *bed, device *device, con
     live_laws_of(scene, bed, &sim->all);
     sim->all.blocks = scene->table.kernel_form == KERNEL_BLOCKS || (scene->table.kernel_form == KERNEL_AUTO && device->info.cpu);
     sim->mixed = sim->all.law[SLOT_PRECISION] != NULL;
+    live_pack(&sim->all);
     sim->all.loop_items = step_loop_items(sim);
     sim->all.lanes = (int)device->info.float_lanes / (sim->mixed || device->info.float_lanes < 2 ? 1 : 2);
     measure_bed(sim, bed);

@@ -61,9 +61,21 @@ clast_launch launch_of_step(const simulation *sim, int s, int bond_step)
     return launch;
 }
 
+/* Packets as the grains are at the start of a batch; its steps keep them up. */
+static status pack_grains(simulation *sim, failure *why)
+{
+    int blocks = (int)(sim->stride / sim->block);
+    if (!sim->live.law[SLOT_PACKED])
+        return STATUS_OK;
+    cl_kernel kernel = launch_kernel(sim, "particle_pack");
+    TRY(launch_set(kernel, "particle_pack", why, "i", (cl_int)blocks));
+    return launch_run(sim, kernel, "particle_pack", blocks, 1, why);
+}
+
 static status enqueue_batch(simulation *sim, int steps, failure *why)
 {
     int bond_step = bonds_step(sim, steps);
+    TRY(pack_grains(sim, why));
     if (step_loop_now(sim))
         return step_loop_enqueue(sim, steps, why);
     for (int s = 0; s < steps; s++) {

@@ -39,6 +39,18 @@ const law law_dimensions_two = {
     .kernel_file = "effect/dimensions_two.cl",
 };
 
+static const field field_packed = {"packed", PER_PARTICLE, FIELD_REAL, 16, FIELD_RESULT, "", "what pairs read of the grain, side by side"};
+
+const law law_packed_grains = {
+    .name = "grains",
+    .slot = SLOT_PACKED,
+    .doc = "What the pair stage reads of a grain, once more in 16 floats side by side: one line of a cache.",
+    .source = "",
+    .kernel_file = "effect/packed_grains.cl",
+    .pair_fields = {&field_packed},
+    .particle_fields = {&field_packed},
+};
+
 const law law_periodic_box = {
     .name = "box",
     .slot = SLOT_PERIODIC,

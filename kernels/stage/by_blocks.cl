@@ -2,11 +2,11 @@
  * Its twin is by_items.cl, and both give the same bits. docs/performance.md has what the parts of this gain.
  *
  * A CPU gathers one number at a time, and a record needs some twenty of its two grains. So a block reads its grains first, three numbers of a
- * grain with one load, and turns them into rows: one number of 64 records side by side, which the loop reads in order. And it asks for the
+ * grain with one load, and turns them into rows: one number of 64 records side by side, which the loop reads in order (rows.cl). And it asks for the
  * grains of a block to come, because the loop leaves no room to wait for them. The particle stage gathers the forces on its grains into rows. */
 /* LANES: numbers in the widest register of the device (host/live.c). */
 #define VECTOR_LOOP _Pragma("clang loop vectorize(assume_safety) vectorize_width(LANES)")
-#define BLOCKS_AHEAD 3
+/* Blocks by which what records keep is asked for before it is wanted; for grains it depends on how they stand (rows_gathered.cl, rows_packed.cl). */
 #define RECORDS_AHEAD 2
 /* Work-groups of records of beds that do not fit the caches next to a core: only there does asking pay. */
 #define BLOCKS_TO_ASK 128
@@ -14,117 +14,8 @@
  * to (PAIRS_ACT_APART: some law acts on two apart, or sums over steps; host/live.c). */
 #define LOT (LANES < 4 ? 4 : LANES)
 #define LOTS (CLAST_BLOCK / LOT)
-/* Rows of one of the two grains: numbers that are wanted with all their bits take EXACT_REALS rows. */
-#define ROW_POSITION 0
-#define ROW_RADIUS (3 * EXACT_REALS)
-#define ROW_MASS (ROW_RADIUS + EXACT_REALS)
-#define ROW_VELOCITY (ROW_MASS + 1)
-#define ROW_SPIN (ROW_VELOCITY + 3)
-#define ROW_PAST (ROW_SPIN + ROTATION_ROWS)
-#define ROW_TEMPERATURE (ROW_PAST + INTEGRATOR_ROWS)
-#define ROWS_OF_GRAIN (ROW_TEMPERATURE + TEMPERATURE_ROWS)
-
-#define ROW(rows, n) ((rows) + (n) * CLAST_BLOCK)
-#define ROW_NUMBER(rows, n, lane) (rows)[(n) * CLAST_BLOCK + (lane)]
-#define ROW_POLAR3(rows, n, lane) v3(ROW_NUMBER(rows, n, lane), ROW_NUMBER(rows, (n) + 1, lane), SPACE_NUMBER(ROW_NUMBER(rows, (n) + 2, lane)))
-#define ROW_AXIAL3(rows, n, lane) \
-    v3(SPACE_NUMBER(ROW_NUMBER(rows, n, lane)), SPACE_NUMBER(ROW_NUMBER(rows, (n) + 1, lane)), ROW_NUMBER(rows, (n) + 2, lane))
-#define ROW_PRECISE_POLAR3(rows, n, lane)                                                  \
-    precise3_of(ROW_PRECISE(rows, n, lane), ROW_PRECISE(rows, (n) + EXACT_REALS, lane),     \
-                SPACE_PRECISE(ROW_PRECISE(rows, (n) + 2 * EXACT_REALS, lane)))
-#define ROW_PRECISE_AXIAL3(rows, n, lane)                                                                              \
-    precise3_of(SPACE_PRECISE(ROW_PRECISE(rows, n, lane)), SPACE_PRECISE(ROW_PRECISE(rows, (n) + EXACT_REALS, lane)),   \
-                ROW_PRECISE(rows, (n) + 2 * EXACT_REALS, lane))
-#define ROW_SET_POLAR3(rows, n, lane, v)                      \
-    do {                                                      \
-        ROW_NUMBER(rows, n, lane) = (v).x;                    \
-        ROW_NUMBER(rows, (n) + 1, lane) = (v).y;              \
-        SPACE_STORE(ROW_NUMBER(rows, (n) + 2, lane) = (v).z); \
-    } while (0)
-#define ROW_SET_AXIAL3(rows, n, lane, v)                      \
-    do {                                                      \
-        SPACE_STORE(ROW_NUMBER(rows, n, lane) = (v).x);       \
-        SPACE_STORE(ROW_NUMBER(rows, (n) + 1, lane) = (v).y); \
-        ROW_NUMBER(rows, (n) + 2, lane) = (v).z;              \
-    } while (0)
 
 /* ---- records ---- */
-
-/* x, y and z of four grains, from three of the four numbers that are loaded of each; the fourth is the next grain's (arrays have room behind
- * the last). Bits only: a stored number has 64 in either precision. */
-INLINE void rows_turn(__global const exact *field, int4 i, ulong4 *x, ulong4 *y, ulong4 *z)
-{
-    __global const ulong *from = (__global const ulong *)field;
-    ulong4 a = vload4(0, from + 3 * (size_t)i.s0), b = vload4(0, from + 3 * (size_t)i.s1);
-    ulong4 c = vload4(0, from + 3 * (size_t)i.s2), d = vload4(0, from + 3 * (size_t)i.s3);
-    ulong4 even_ab = (ulong4)(a.s0, b.s0, a.s2, b.s2), odd_ab = (ulong4)(a.s1, b.s1, a.s3, b.s3);
-    ulong4 even_cd = (ulong4)(c.s0, d.s0, c.s2, d.s2), odd_cd = (ulong4)(c.s1, d.s1, c.s3, d.s3);
-    *x = (ulong4)(even_ab.s01, even_cd.s01);
-    *y = (ulong4)(odd_ab.s01, odd_cd.s01);
-    *z = (ulong4)(even_ab.s23, even_cd.s23);
-}
-
-/* Three rows of numbers as they are nearest to reals. */
-INLINE void rows_polar3(__global const exact *field, int4 i, real *to)
-{
-    ulong4 x, y, z;
-    rows_turn(field, i, &x, &y, &z);
-    row_rounded(x, to);
-    row_rounded(y, ROW(to, 1));
-    SPACE_STORE(row_rounded(z, ROW(to, 2)));
-}
-
-INLINE void rows_axial3(__global const exact *field, int4 i, real *to)
-{
-    ulong4 x, y, z;
-    rows_turn(field, i, &x, &y, &z);
-    SPACE_STORE(row_rounded(x, to));
-    SPACE_STORE(row_rounded(y, ROW(to, 1)));
-    row_rounded(z, ROW(to, 2));
-}
-
-/* A row of numbers, one a grain. */
-INLINE void rows_number(__global const exact *field, int4 i, real *to)
-{
-    __global const ulong *from = (__global const ulong *)field;
-    row_rounded((ulong4)(from[i.s0], from[i.s1], from[i.s2], from[i.s3]), to);
-}
-
-/* Three numbers with all their bits. */
-INLINE void rows_exact_polar3(__global const exact *field, int4 i, real *to)
-{
-    ulong4 x, y, z;
-    rows_turn(field, i, &x, &y, &z);
-    row_exact(x, to, CLAST_BLOCK);
-    row_exact(y, ROW(to, EXACT_REALS), CLAST_BLOCK);
-    SPACE_STORE(row_exact(z, ROW(to, 2 * EXACT_REALS), CLAST_BLOCK));
-}
-
-INLINE void rows_exact_axial3(__global const exact *field, int4 i, real *to)
-{
-    ulong4 x, y, z;
-    rows_turn(field, i, &x, &y, &z);
-    SPACE_STORE(row_exact(x, to, CLAST_BLOCK));
-    SPACE_STORE(row_exact(y, ROW(to, EXACT_REALS), CLAST_BLOCK));
-    row_exact(z, ROW(to, 2 * EXACT_REALS), CLAST_BLOCK);
-}
-
-/* Four records' grains on one side, into the rows of that side: what tells whether they may touch, and the rest. */
-INLINE void rows_fill_places(int4 i, real *to PAIR_DECLARE)
-{
-    __global const ulong *radii = (__global const ulong *)radius;
-    rows_exact_polar3(position, i, ROW(to, ROW_POSITION));
-    row_exact((ulong4)(radii[i.s0], radii[i.s1], radii[i.s2], radii[i.s3]), ROW(to, ROW_RADIUS), CLAST_BLOCK);
-}
-
-INLINE void rows_fill_rest(int4 i, real *to PAIR_DECLARE)
-{
-    vstore4((real4)(mass[i.s0], mass[i.s1], mass[i.s2], mass[i.s3]), 0, ROW(to, ROW_MASS));
-    rows_polar3(velocity, i, ROW(to, ROW_VELOCITY));
-    ROTATION_ROWS_FILL(i, ROW(to, ROW_SPIN));
-    INTEGRATOR_ROWS_FILL(i, ROW(to, ROW_PAST));
-    TEMPERATURE_ROWS_FILL(i, ROW(to, ROW_TEMPERATURE));
-}
 
 INLINE void sphere_of_rows(const real *rows, int lane, sphere *s)
 {
@@ -178,23 +69,11 @@ INLINE int pair_is_near(const clast_launch *launch, const real *owners, const re
     return dot3(d, d) < R(1.00001) * sum * sum;
 }
 
-/* Pocl's prefetch() does nothing. */
-#define ASK_FOR(address) __builtin_prefetch((const void *)(size_t)(address), 0, 2)
-#define ASK_TO_CHANGE(address) __builtin_prefetch((const void *)(size_t)(address), 1, 3)
-
 /* Grains of a block of records to come. */
 INLINE void grains_ask_ahead(__global const int *which, int k PAIR_DECLARE)
 {
-    for (int lane = 0; lane < CLAST_BLOCK; lane++) {
-        size_t i = which[k + lane];
-        ASK_FOR(position + 3 * i);
-        ASK_FOR(velocity + 3 * i);
-        ASK_FOR(radius + i);
-        ASK_FOR(mass + i);
-        ROTATION_ASK_FOR(i);
-        INTEGRATOR_ASK_FOR(i);
-        TEMPERATURE_ASK_FOR(i);
-    }
+    for (int lane = 0; lane < CLAST_BLOCK; lane++)
+        grain_ask_for(which[k + lane] PAIR_PASS);
 }
 
 /* What a block of records to come keeps, a component of a field at a time: there are more of them than rows a processor follows, and each ends at
@@ -248,13 +127,11 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
     real owners[ROWS_OF_GRAIN * CLAST_BLOCK], others[ROWS_OF_GRAIN * CLAST_BLOCK];
     int k = (int)(widest((ulong8)((ulong)(CLAST_BLOCK * group))).s0 - 1), some[LOTS];
     bool all = PAIRS_ACT_APART || !launch->loose;
-    for (int quad = 0; quad < CLAST_BLOCK / 4; quad++) {
-        rows_fill_places(vload4(quad, owner + k), owners + 4 * quad PAIR_PASS);
-        rows_fill_places(vload4(quad, other + k), others + 4 * quad PAIR_PASS);
-    }
-    if (launch->first_wall_group >= BLOCKS_TO_ASK && group + BLOCKS_AHEAD < launch->first_wall_group) {
-        grains_ask_ahead(other, k + BLOCKS_AHEAD * CLAST_BLOCK PAIR_PASS);
-        records_ask_ahead(launch, k + RECORDS_AHEAD * CLAST_BLOCK, k + (BLOCKS_AHEAD + RECORDS_AHEAD) * CLAST_BLOCK PAIR_PASS);
+    rows_fill_places(owner + k, owners PAIR_PASS);
+    rows_fill_places(other + k, others PAIR_PASS);
+    if (launch->first_wall_group >= BLOCKS_TO_ASK && group + GRAINS_AHEAD < launch->first_wall_group) {
+        grains_ask_ahead(other, k + GRAINS_AHEAD * CLAST_BLOCK PAIR_PASS);
+        records_ask_ahead(launch, k + RECORDS_AHEAD * CLAST_BLOCK, k + (GRAINS_AHEAD + RECORDS_AHEAD) * CLAST_BLOCK PAIR_PASS);
     }
     pair_fill_lots(launch, k, owners, others, some PAIR_PASS);
     for (int lot = 0, end; lot < LOTS; lot = end) {
@@ -272,6 +149,9 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
     }
 }
 
+/* Of a wall without borders, whose contact takes no loop: as vector code. */
+PAIR_OF_WALL(INLINE, pair_of_plane, PAIR_STORE_STATE)
+
 /* Walls' records come first in a step, when no grain has been looked at for long. The last block asks for its own once more. */
 INLINE void pair_wall_block(const clast_launch *launch, int group, bool last PAIR_DECLARE)
 {
@@ -280,8 +160,9 @@ INLINE void pair_wall_block(const clast_launch *launch, int group, bool last PAI
         grains_ask_ahead(owner, CLAST_BLOCK * next PAIR_PASS);
         records_ask_ahead(launch, CLAST_BLOCK * next, CLAST_BLOCK * next PAIR_PASS);
     }
+    WALLS_LOOP
     for (int lane = 0; lane < CLAST_BLOCK; lane++)
-        pair_of_wall(launch, CLAST_BLOCK * group + lane PAIR_PASS);
+        PAIR_OF_WALLS(launch, CLAST_BLOCK * group + lane PAIR_PASS);
 }
 
 /* Work-groups of records from..to of those that start at the launch's first; walls' are given a copy, so that the other is nobody else's. */
@@ -390,6 +271,7 @@ INLINE void particle_block(const clast_launch *launch, __global clast_control *c
         CONDUCTION_OF_ROWS(rows, ROW_HEAT, lane, h);
         far |= particle_step(launch, first + lane, &m, ROW_POLAR3(rows, ROW_FORCE, lane), ROTATION_OF_ROWS(rows, ROW_TORQUE, lane), &h PARTICLE_PASS);
     }
+    grains_pack(first, PARTICLE_LANES PARTICLE_PASS);
     if (far)
         particle_halt(launch, control);
 }

@@ -61,8 +61,8 @@
         PAIR_FROM_CONTACT(keep);                                                                    \
     }
 
-#define PAIR_OF_WALL(name, keep)                                                                    \
-    OUTLINE void name(const clast_launch *launch, int k PAIR_DECLARE)                               \
+#define PAIR_OF_WALL(form, name, keep)                                                              \
+    form void name(const clast_launch *launch, int k PAIR_DECLARE)                               \
     {                                                                                               \
         contact c;                                                                                  \
         contact_state s;                                                                            \
@@ -78,6 +78,6 @@
     }
 
 PAIR_OF_GRAINS(pair_of_grains, PAIR_STORE_STATE)
-PAIR_OF_WALL(pair_of_wall, PAIR_STORE_STATE)
+PAIR_OF_WALL(OUTLINE, pair_of_wall, PAIR_STORE_STATE)
 PAIR_OF_GRAINS(pair_of_grains_as_is, PAIR_STORE_WORK)
-PAIR_OF_WALL(pair_of_wall_as_is, PAIR_STORE_WORK)
+PAIR_OF_WALL(OUTLINE, pair_of_wall_as_is, PAIR_STORE_WORK)

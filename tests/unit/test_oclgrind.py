@@ -97,8 +97,7 @@ class Oclgrind(unittest.TestCase):
 
     def without_prefetch(self):
         """Oclgrind does not know that instruction, which changes nothing."""
-        return self.changed_kernels("stage/by_blocks.cl", "#define ASK_FOR(address) __builtin_prefetch((const void *)(size_t)(address), 0, 2)",
-                                    "#define ASK_FOR(address)")
+        return self.changed_kernels("stage/rows.cl", "__builtin_prefetch((const void *)(size_t)(address), to_change, near)", "")
 
     def test_two_kernels(self):
         self.check_memory_and_races(form="kernel_form: items, step_form: two_kernels")
@@ -108,6 +107,9 @@ class Oclgrind(unittest.TestCase):
 
     def test_blocks(self):
         self.check_memory_and_races(form="kernel_form: blocks", kernels=self.without_prefetch())
+
+    def test_blocks_in_mixed_precision(self):
+        self.check_memory_and_races(form="kernel_form: blocks", precision="mixed", kernels=self.without_prefetch())
 
     def test_phases_in_mixed_precision(self):
         self.check_memory_and_races(form="kernel_form: blocks, step_form: phases, chunk_records: 64", kernels=self.without_prefetch(), precision="mixed")

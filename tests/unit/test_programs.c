@@ -106,7 +106,9 @@ static live_laws all_at_once(bool second, bool mixed)
 static int files_of(const live_laws *live, const char **files)
 {
     const char *table[LIVE_TABLE_FILES];
-    int count = live_files(live, files, FILES_MAX - 1 - LIVE_TABLE_FILES), tables = live_table_files(live, table);
+    live_laws packed = *live;
+    live_pack(&packed);
+    int count = live_files(&packed, files, FILES_MAX - 1 - LIVE_TABLE_FILES), tables = live_table_files(live, table);
     for (int f = 0, own = count; f < tables; f++) { /* some are in both */
         int same = 0;
         while (same < own && strcmp(files[same], table[f]) != 0)
