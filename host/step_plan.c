@@ -19,7 +19,7 @@
 /* Records of a chunk for each block in a group: 16 blocks go together in the usual chunk, so that ragged borders make no small launches. */
 #define CHUNK_PER_BLOCK 2048
 /* A chunk of a stream in chunks that are launched. */
-#define STREAM_CHUNK_SHARE 4
+#define STREAM_CHUNK_SHARE 8
 /* Steps between tables, times records, from which streams take off more than they cost (docs/performance.md). */
 #define STREAMS_PAY 3e5
 
