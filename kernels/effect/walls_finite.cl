@@ -1,6 +1,6 @@
 /* walls: planes, rectangles and discs. A rectangle or a disc acts from both sides, at its face, its edge and its corners. An edge or a
- * corner counts only where no other face is nearer at that point, and once where several faces share it: the smallest index has it. */
-/* Their records are taken one by one (stage/by_blocks.cl). */
+ * corner counts only where no other face is nearer at that point, and once where several faces share it: the smallest index has it.
+ * So a record takes a loop over faces, and is taken by itself (stage/by_blocks.cl). */
 #define WALLS_LOOP
 #define PAIR_OF_WALLS pair_of_wall
 INLINE precise walls_clamp(precise x, precise limit)

@@ -1,5 +1,5 @@
-/* walls: infinite planes with the grains on the side of the normal. */
-/* Their records are vector code (stage/by_blocks.cl). */
+/* walls: infinite planes with the grains on the side of the normal. Their records are vector code where stages go by blocks
+ * (stage/by_blocks.cl). */
 #define WALLS_LOOP VECTOR_LOOP
 #define PAIR_OF_WALLS pair_of_plane
 INLINE void walls_contact(const __global clast_face *row, int face_count, int index, precise3 x, vec3 velocity_i, contact *c, wall_touch *touch)

@@ -1,5 +1,4 @@
 /* walls: none. */
-/* Their records are taken one by one (stage/by_blocks.cl). */
 #define WALLS_LOOP
 #define PAIR_OF_WALLS pair_of_wall
 #define WALLS_PAIR_FIELDS(READ, WRITE)

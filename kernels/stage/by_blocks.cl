@@ -76,13 +76,14 @@ INLINE void grains_ask_ahead(__global const int *which, int k PAIR_DECLARE)
         grain_ask_for(which[k + lane] PAIR_PASS);
 }
 
-/* What a block of records to come keeps, a component of a field at a time: there are more of them than rows a processor follows, and each ends at
- * every page. The names of its grains are asked for as far ahead again as these wait for them. */
+/* Reals in a line of a cache. */
+#define LINE_REALS (64 / (int)sizeof(real))
+/* What a block of records to come keeps, a component of a field at a time: there are more of them than a processor follows by itself, and it begins
+ * anew at every page. `names`: the block whose grains are asked for next. */
 #define RECORDS_ASK_FOR(launch, field, components, k)                                        \
     for (int c = 0; c < (components); c++)                                                  \
         for (int lane = 0; lane < CLAST_BLOCK; lane += LINE_REALS)                          \
     ASK_TO_CHANGE(&AT(field, (launch)->record_stride, c, (k) + lane))
-#define LINE_REALS (64 / (int)sizeof(real))
 INLINE void records_ask_ahead(const clast_launch *launch, int k, int names PAIR_DECLARE)
 {
     BOND_ASK_FOR(launch, k);
