@@ -223,6 +223,13 @@ INLINE void bond_modes(const contact *c, const bond_state *s, mode *normal, mode
     (void)rolling;
 }
 
+/* Gap up to which a bond is made. */
+INLINE real bond_reach(const contact *c)
+{
+    (void)c;
+    return R(0.0);
+}
+
 /* A pair that cannot bond has no adhesion: it keeps the modes of its contact. An impact comes from outside, where no neck is drawn. */
 INLINE bond_state bond_expected(const contact *c)
 {

@@ -158,6 +158,12 @@ INLINE void bond_modes(const contact *c, const bond_state *s, mode *normal, mode
     rolling->damping = own * rolling->damping + keep * (twist_root > R(1.0) ? twist_root : R(1.0)) * p.bend_damping;
 }
 
+/* Gap up to which a bond is made. */
+INLINE real bond_reach(const contact *c)
+{
+    return beam_reach(c);
+}
+
 /* A pair that cannot bond keeps the modes of its contact. */
 INLINE bond_state bond_expected(const contact *c)
 {

@@ -62,3 +62,10 @@ INLINE bond_state bond_expected(const contact *c)
     (void)c;
     return s;
 }
+
+/* Gap up to which a bond is made. */
+INLINE real bond_reach(const contact *c)
+{
+    (void)c;
+    return R(0.0);
+}

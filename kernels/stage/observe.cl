@@ -99,8 +99,22 @@ INLINE void observe_record(const clast_launch *launch, int k, bool wall PAIR_DEC
 
 RECORD_KERNEL(observe_records, observe_record)
 
+INLINE mode mode_of(bool first, mode a, mode b)
+{
+    mode m = {first ? a.stiffness : b.stiffness, first ? a.damping : b.damping};
+    return m;
+}
+
+/* b, or what is larger of a where `also`. */
+INLINE mode mode_stiffer(bool also, mode a, mode b)
+{
+    mode m = {also && a.stiffness > b.stiffness ? a.stiffness : b.stiffness, also && a.damping > b.damping ? a.damping : b.damping};
+    return m;
+}
+
 /* Every record's normal, and stiffness and damping of its modes, where its force and torque stand. Both count twice between two grains: of
- * the energy of a spring, (a + b)^2 <= 2 a^2 + 2 b^2 goes to its two ends (docs/theory.md). */
+ * the energy of a spring, (a + b)^2 <= 2 a^2 + 2 b^2 goes to its two ends (docs/theory.md). Two that touch and may bond count as bonded too: the step
+ * is chosen before they do. */
 INLINE void limit_record(const clast_launch *launch, int k, bool wall PAIR_DECLARE)
 {
     contact c;
@@ -117,10 +131,17 @@ INLINE void limit_record(const clast_launch *launch, int k, bool wall PAIR_DECLA
     cohesion_state cohesion;
     BOND_LOAD(launch, k, bond);
     COHESION_LOAD(launch, k, cohesion);
+    bool holds = bond_holds(&bond) > R(0.5), to_come = c.gap <= bond_reach(&c) && !holds;
+    mode coming[3] = {n, t, r};
+    bond_state expected = bond_expected(&c);
+    bond_modes(&c, &expected, &coming[0], &coming[1], &coming[2]);
     bond_modes(&c, &bond, &n, &t, &r);
     const mode without = n;
     cohesion_mode(&c, &cohesion, &n);
-    n = bond_holds(&bond) > R(0.5) ? without : n;
+    n = mode_of(holds, without, n);
+    n = mode_stiffer(to_come, coming[0], n);
+    t = mode_stiffer(to_come, coming[1], t);
+    r = mode_stiffer(to_come, coming[2], r);
     LIMIT_STORE(launch, k, twice, c.n, n, t, r);
 }
 
@@ -240,7 +261,7 @@ BODY void limit_expected_unit(__global const real *restrict contact_constants, _
                               const real radius_i, const real radius_j, const real mass_i, const real mass_j, const real speed,
                               const real weight)
 {
-    contact c;
+    contact c = {0}; /* no velocity, no spin, no direction */
     bool wall = mass_j <= R(0.0);
     c.radius_i = radius_i;
     c.radius_j = wall ? c.radius_i : radius_j;
@@ -290,7 +311,8 @@ BODY void limit_expected_unit(__global const real *restrict contact_constants, _
         duration += left > R(0.0) ? cos(phi) / sqrt(left) : R(0.0);
     }
     duration *= R(2.0) * impact_high * R(1.5707963267948966) / (real)EXPECTED_POINTS;
-    expected_at(&c, pulled_high > rest_high ? pulled_high : rest_high);
+    real deepest = pulled_high > impact_high ? pulled_high : impact_high; /* a bond may be made at the bottom of an impact */
+    expected_at(&c, deepest > rest_high ? deepest : rest_high);
     real inverse = R(1.0) / c.mass_eff;
     mode a = normal_mode(&c), t = tangential_mode(&c), r = rolling_mode(&c);
     mode cohering = a; /* with cohesion or with a bond: the stiffer of the two may come */
@@ -302,7 +324,6 @@ BODY void limit_expected_unit(__global const real *restrict contact_constants, _
     real spin_both = wall ? spin_i : spin_i + R(1.0) / (R(0.4) * c.mass_j * c.radius_j * c.radius_j);
     real turning = limit_step(R(3.5) * t.stiffness * inverse + spin_both * r.stiffness, R(3.5) * t.damping * inverse + spin_both * r.damping);
     c.touch = c.overlap;
-    c.slip = c.past_slip = c.spin_i = c.spin_j = c.past_spin_i = c.past_spin_j = c.n = v3(R(0.0), R(0.0), R(0.0));
     bond_geometry(&c, &bond);
     real conductance = wall ? conduction_wall_conductance(&c) : conduction_conductance(&c);
     result[0] = precise_store(precise_from(c.overlap));
