@@ -97,6 +97,7 @@ static status profile_steps(simulation *sim, cl_command_queue queue, cl_event *e
     clast_control control = {.halt_step = PROFILE_STEPS};
     launch.travel2 = 1.0; /* no table falls due meanwhile */
     TRY(store_write(sim, sim->control, 0, sizeof control, &control, why));
+    TRY(steps_pack_grains(sim, why));
     TRY_CL(clFinish(sim->device->queue), "setting up");
     for (int s = 0; s < PROFILE_STEPS; s++) {
         TRY(step_plan_enqueue(sim, queue, launch, event, why));

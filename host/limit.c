@@ -23,6 +23,7 @@
 static status live_limit(simulation *sim, double *normal, double *turning, failure *why)
 {
     clast_launch launch = launch_values(sim);
+    launch.bonding = !sim->bonding_done; /* where contacts bond in one step of the run: it is to come */
     cl_kernel records = launch_kernel(sim, "limit_records"), grains = launch_kernel(sim, "limit_particles");
     contact_table *t = &sim->table;
     stored_field *torque = sim->live.law[SLOT_ROTATION] ? store_find(sim, "torque") : NULL;

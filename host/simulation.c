@@ -174,6 +174,7 @@ static status create_bodies(simulation *sim, failure *why)
     return servo_create(sim, why);
 }
 
+/* Of those that are sorted with the grains. */
 static uint64_t widest_field(const simulation *sim)
 {
     uint64_t widest = 0;

@@ -239,6 +239,8 @@ status simulation_begin_stage(simulation *sim, int stage, failure *why);
 status simulation_enter_stage(simulation *sim, int stage, failure *why);
 /* Takes n steps of sim->dt; builds tables on the way. Grains that leave are deleted where the scene says so, else STATUS_GUARD. */
 status simulation_advance(simulation *sim, int64_t steps, failure *why);
+/* Packets as the grains are now, before steps that are enqueued (kernels/stage/rows_packed.cl); nothing where grains have none. */
+status steps_pack_grains(simulation *sim, failure *why);
 /* After a sort that put the leavers last: takes note of them; `kept` grains remain. */
 status simulation_count_leavers(simulation *sim, int64_t kept, failure *why);
 /* Displacements are measured against this velocity until the next table. */

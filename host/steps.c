@@ -62,7 +62,7 @@ clast_launch launch_of_step(const simulation *sim, int s, int bond_step)
 }
 
 /* Packets as the grains are at the start of a batch; its steps keep them up. */
-static status pack_grains(simulation *sim, failure *why)
+status steps_pack_grains(simulation *sim, failure *why)
 {
     int blocks = (int)(sim->stride / sim->block);
     if (!sim->live.law[SLOT_PACKED])
@@ -75,7 +75,7 @@ static status pack_grains(simulation *sim, failure *why)
 static status enqueue_batch(simulation *sim, int steps, failure *why)
 {
     int bond_step = bonds_step(sim, steps);
-    TRY(pack_grains(sim, why));
+    TRY(steps_pack_grains(sim, why));
     if (step_loop_now(sim))
         return step_loop_enqueue(sim, steps, why);
     for (int s = 0; s < steps; s++) {

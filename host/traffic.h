@@ -5,7 +5,8 @@
 
 /* Bytes of one launch over `items` work-items. Every array counts once, however often a kernel comes back to it: as long as it is (pair stage
  * and particle stage: the share of it that the launch is of the whole stage), and twice where it is read and written. So this is the least
- * that must move, and what a cache that holds nothing adds to it is not in it. */
+ * that must move, and what a cache that holds nothing adds to it is not in it; but where pairs read packets, the fields of grains that stand in them
+ * count beside, of which only walls' records read some. */
 status traffic_of_launch(simulation *sim, cl_kernel kernel, const char *name, size_t items, double *bytes, failure *why);
 
 /* Bytes of a whole step, and how many arguments its two kernels have. */

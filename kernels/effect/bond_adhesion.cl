@@ -223,11 +223,11 @@ INLINE void bond_modes(const contact *c, const bond_state *s, mode *normal, mode
     (void)rolling;
 }
 
-/* Gap up to which a bond is made. */
-INLINE real bond_reach(const contact *c)
+/* Whether the two, as near as they are, may still get a bond that they do not have. */
+INLINE bool bond_may_come(const contact *c, const bond_state *s)
 {
-    (void)c;
-    return R(0.0);
+    bool holds = bond_holds(s) > R(0.5);
+    return !holds && s->count >= R(0.0) && c->gap <= R(0.0) && c->value[BONDING_THRESHOLD] < R(1e29) && BONDING_COMES(s->bonding);
 }
 
 /* A pair that cannot bond has no adhesion: it keeps the modes of its contact. An impact comes from outside, where no neck is drawn. */

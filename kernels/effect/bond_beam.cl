@@ -158,10 +158,11 @@ INLINE void bond_modes(const contact *c, const bond_state *s, mode *normal, mode
     rolling->damping = own * rolling->damping + keep * (twist_root > R(1.0) ? twist_root : R(1.0)) * p.bend_damping;
 }
 
-/* Gap up to which a bond is made. */
-INLINE real bond_reach(const contact *c)
+/* Whether the two, as near as they are, may still get a bond that they do not have. */
+INLINE bool bond_may_come(const contact *c, const bond_state *s)
 {
-    return beam_reach(c);
+    bool holds = bond_holds(s) > R(0.5);
+    return !holds && s->count >= R(0.0) && c->gap <= beam_reach(c) && c->value[BONDING_THRESHOLD] < R(1e29) && BONDING_COMES(s->bonding);
 }
 
 /* A pair that cannot bond keeps the modes of its contact. */

@@ -4,6 +4,7 @@
 #define BONDING_THRESHOLD 0
 #endif
 #define BONDING_PAIR_FIELDS(READ, WRITE) READ(real, scalar)
+#define BONDING_COMES(loaded) true
 #define BONDING_LOAD(launch, k) bonding_lower(scalar[owner[k]], scalar[BONDING_OTHER(launch, k)])
 /* The other grain; the grain itself at a wall, where `other` names a face. */
 #define BONDING_OTHER(launch, k) ((k) < (launch)->first_wall_group * CLAST_BLOCK ? other[k] : owner[k])

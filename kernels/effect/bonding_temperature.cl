@@ -8,6 +8,7 @@
 #define BONDING_TEMPERATURE 0
 #endif
 #define BONDING_PAIR_FIELDS(READ, WRITE)
+#define BONDING_COMES(loaded) true
 #define BONDING_LOAD(launch, k) R(0.0)
 
 INLINE real bonding_value(const contact *c, real loaded)

@@ -63,9 +63,10 @@ INLINE bond_state bond_expected(const contact *c)
     return s;
 }
 
-/* Gap up to which a bond is made. */
-INLINE real bond_reach(const contact *c)
+/* Whether the two may still get a bond that they do not have. */
+INLINE bool bond_may_come(const contact *c, const bond_state *s)
 {
     (void)c;
-    return R(0.0);
+    (void)s;
+    return false;
 }

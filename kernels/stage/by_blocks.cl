@@ -79,7 +79,7 @@ INLINE void grains_ask_ahead(__global const int *which, int k PAIR_DECLARE)
 /* Reals in a line of a cache. */
 #define LINE_REALS (64 / (int)sizeof(real))
 /* What a block of records to come keeps, a component of a field at a time: there are more of them than a processor follows by itself, and it begins
- * anew at every page. `names`: the block whose grains are asked for next. */
+ * anew at every page. `names`: the block whose grains are to be asked for RECORDS_AHEAD blocks from here. */
 #define RECORDS_ASK_FOR(launch, field, components, k)                                        \
     for (int c = 0; c < (components); c++)                                                  \
         for (int lane = 0; lane < CLAST_BLOCK; lane += LINE_REALS)                          \
@@ -153,13 +153,12 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
 /* Of a wall without borders, whose contact takes no loop: as vector code. */
 PAIR_OF_WALL(INLINE, pair_of_plane, PAIR_STORE_STATE)
 
-/* Walls' records come first in a step, when no grain has been looked at for long. The last block asks for its own once more. */
-INLINE void pair_wall_block(const clast_launch *launch, int group, bool last PAIR_DECLARE)
+/* Walls' records come first in a step, when no grain has been looked at for long: all that a block needs is asked for at once. */
+INLINE void pair_wall_block(const clast_launch *launch, int group PAIR_DECLARE)
 {
-    int next = last ? group : group + 1;
     if (launch->first_wall_group >= BLOCKS_TO_ASK) {
-        grains_ask_ahead(owner, CLAST_BLOCK * next PAIR_PASS);
-        records_ask_ahead(launch, CLAST_BLOCK * next, CLAST_BLOCK * next PAIR_PASS);
+        grains_ask_ahead(owner, CLAST_BLOCK * group PAIR_PASS);
+        records_ask_ahead(launch, CLAST_BLOCK * group, CLAST_BLOCK * group PAIR_PASS);
     }
     WALLS_LOOP
     for (int lane = 0; lane < CLAST_BLOCK; lane++)
@@ -174,7 +173,7 @@ BODY void pair_blocks(const clast_launch *given, const clast_launch *for_walls, 
         if (group < launch->first_wall_group)
             pair_block(launch, group PAIR_PASS);
         else
-            pair_wall_block(for_walls, group, group + 1 == launch->first_group + to PAIR_PASS);
+            pair_wall_block(for_walls, group PAIR_PASS);
 }
 
 __kernel void pair_stage(const clast_launch launch, __global const clast_control *restrict control PAIR_DECLARE)

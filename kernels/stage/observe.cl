@@ -113,8 +113,8 @@ INLINE mode mode_stiffer(bool also, mode a, mode b)
 }
 
 /* Every record's normal, and stiffness and damping of its modes, where its force and torque stand. Both count twice between two grains: of
- * the energy of a spring, (a + b)^2 <= 2 a^2 + 2 b^2 goes to its two ends (docs/theory.md). Two that touch and may bond count as bonded too: the step
- * is chosen before they do. */
+ * the energy of a spring, (a + b)^2 <= 2 a^2 + 2 b^2 goes to its two ends (docs/theory.md). Two that are near enough to bond, and may, count as bonded
+ * too: the step is chosen before they do. */
 INLINE void limit_record(const clast_launch *launch, int k, bool wall PAIR_DECLARE)
 {
     contact c;
@@ -131,7 +131,7 @@ INLINE void limit_record(const clast_launch *launch, int k, bool wall PAIR_DECLA
     cohesion_state cohesion;
     BOND_LOAD(launch, k, bond);
     COHESION_LOAD(launch, k, cohesion);
-    bool holds = bond_holds(&bond) > R(0.5), to_come = c.gap <= bond_reach(&c) && !holds;
+    bool holds = bond_holds(&bond) > R(0.5), to_come = bond_may_come(&c, &bond);
     mode coming[3] = {n, t, r};
     bond_state expected = bond_expected(&c);
     bond_modes(&c, &expected, &coming[0], &coming[1], &coming[2]);

@@ -80,11 +80,12 @@ INLINE void rows_fill_rest(int4 i, real *to PAIR_DECLARE)
 /* Grains that have moved, or that a batch begins with. */
 INLINE void grains_pack(int first, int count PARTICLE_DECLARE)
 {
-    __global const ulong *places = (__global const ulong *)position, *radii = (__global const ulong *)radius;
     for (int i = first; i < first + count; i++) {
-        ulong4 place = vload4(0, places + 3 * (size_t)i);
+        /* as the floats that the numbers are stored as: read as anything else, they could be taken for those before the step */
+        float8 place = vload8(0, (__global const float *)(position + 3 * (size_t)i));
+        float2 size = vload2(0, (__global const float *)(radius + i));
         vec3 v = GRAIN_POLAR3(velocity, i), w = ROTATION_LOAD(launch, i);
-        vstore8(as_float8((ulong4)(place.s012, radii[i])), 2 * (size_t)i, packed);
+        vstore8((float8)(place.s0123, place.s45, size), 2 * (size_t)i, packed);
         vstore8((float8)(mass[i], v.x, v.y, v.z, w.x, w.y, w.z, TEMPERATURE_OF_GRAIN(i)), 2 * (size_t)i + 1, packed);
     }
 }
