@@ -94,22 +94,28 @@ typedef struct outbox {
 /* Who goes through the phases of the steps of a batch, see step_loop.c. */
 typedef enum loop_manner { LOOP_PHASES, LOOP_TEAM, LOOP_ALONE, LOOP_MANNERS } loop_manner;
 
+/* Which of them is the fastest, by the batches of the run itself, see form_trials.c. Work is steps times what a step costs, in a unit of the caller's. */
+typedef struct form_trials {
+    loop_manner manner, best;   /* of the batch under way; of all but trials */
+    bool trial;                 /* the batch under way is part of one */
+    int64_t batches;            /* so far, with this program */
+    int settling, timed;        /* batches that this manner still goes through before one is timed; those that were */
+    double pace;                /* of the best, s a unit of work of late; 0: not known */
+    double spent;               /* s in batches */
+    double due[LOOP_MANNERS];   /* of them, when it is to be tried again */
+    int wins[LOOP_MANNERS];     /* trials in a row in which it was the faster */
+    double began;               /* of them, when this manner's batches began */
+    double work, timed_work, timed_seconds; /* of them in all, and of those of a trial that were timed */
+    double table[LOOP_MANNERS]; /* s a table after such a batch, of late; 0: not known */
+    double table_steps;         /* that a table lasts, of late */
+} form_trials;
+
 /* What many steps in one launch need, see step_loop.c; nothing while they are not used. */
 typedef struct step_loop {
     cl_mem launches, team, phases, pieces; /* of the steps of a batch; of the plan */
     clast_launch *rows;
     int rows_held, pieces_held;
-    loop_manner manner, best;      /* of the batch under way; of all but trials */
-    int64_t batches;               /* so far, with this program */
-    int settling, timed;           /* batches that this manner still goes through before one is timed; those of a trial that were */
-    double pace;                   /* of the best, s a step and record of late; 0: not known */
-    double spent;                  /* s in batches */
-    double due[LOOP_MANNERS];      /* of them, when it is to be tried again */
-    int wins[LOOP_MANNERS];        /* trials in a row in which it was the faster */
-    double trial_begin;            /* of them, when the trial under way began */
-    double trial_work, timed_work, timed_seconds; /* of it: steps times records in all, and in batches that were timed */
-    double table[LOOP_MANNERS];    /* s a table after such a batch, of late; 0: not known */
-    double table_steps;            /* that a table lasts, of late */
+    form_trials trials;
 } step_loop;
 
 typedef struct step_limit {
@@ -344,13 +350,19 @@ status step_loop_enqueue(simulation *sim, int steps, failure *why);
 const char *step_loop_name(const simulation *sim);
 /* Launches of a step so taken; 0: one of a batch. */
 int step_loop_launches(const simulation *sim);
-/* What was timed was of another program. */
-void step_loop_forget(simulation *sim);
 /* After a batch of so many steps, which took so long. */
 void step_loop_note(simulation *sim, int steps, double seconds);
-/* What the table after the last batch took, and the steps that the one before it had lasted. */
-void step_loop_note_table(simulation *sim, int64_t lasted, double seconds);
 void step_loop_free(simulation *sim);
+
+/* form_trials.c */
+/* What was timed was of another program. */
+void form_trials_forget(form_trials *trials);
+/* The manner of the batch to come; `only`: the one that it must have, or LOOP_MANNERS. A bed that is not small is not tried alone. */
+loop_manner form_trials_next(form_trials *trials, loop_manner only, bool small);
+/* After a batch of so many steps, each so much work, which took so long. */
+void form_trials_note(form_trials *trials, int64_t steps, double step_work, double seconds, bool small);
+/* What the table after the last batch took, and the steps that the one before it had lasted. */
+void form_trials_note_table(form_trials *trials, int64_t lasted, double seconds);
 
 /* step_plan.c */
 /* Work-items that take a block of grains through the particle stage, where stages go by blocks (PARTICLE_LANES in kernels/stage/by_blocks.cl). */

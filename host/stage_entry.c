@@ -115,7 +115,7 @@ status simulation_enter_stage(simulation *sim, int stage, failure *why)
     if (!same) {
         launch_close(sim);
         TRY(launch_open(sim, why));
-        step_loop_forget(sim);
+        form_trials_forget(&sim->loop.trials);
     }
     TRY(forget_histories(sim, why));
     TRY(servo_enter(sim, why));

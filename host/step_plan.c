@@ -264,7 +264,7 @@ static status plan_chunks(simulation *sim, planning *p, failure *why)
  * millisecond. Before anything is known of how long tables last, they may last for ever. */
 static bool streams_pay(const simulation *sim)
 {
-    double steps = sim->loop.table_steps;
+    double steps = sim->loop.trials.table_steps;
     return steps <= 0.0 || steps * (double)sim->table.wall_base > STREAMS_PAY;
 }
 

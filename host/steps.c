@@ -146,7 +146,7 @@ status simulation_advance(simulation *sim, int64_t steps, failure *why)
             double before = sim->rebuild_seconds;
             TRY(simulation_pose_now(sim, why));
             TRY(table_build(sim, false, why));
-            step_loop_note_table(sim, lasted, sim->rebuild_seconds - before);
+            form_trials_note_table(&sim->loop.trials, lasted, sim->rebuild_seconds - before);
         }
     }
     sim->step_seconds += clock_seconds() - start - (sim->rebuild_seconds - rebuilding);
