@@ -185,12 +185,12 @@ INLINE real power_of(real x, real y)
     do {                                                                 \
         STORE_PRECISE((field)[3 * (size_t)(i)], (v).x);                  \
         STORE_PRECISE((field)[3 * (size_t)(i) + 1], (v).y);              \
-        SPACE_STORE(STORE_PRECISE((field)[3 * (size_t)(i) + 2], (v).z)); \
+        STORE_PRECISE((field)[3 * (size_t)(i) + 2], SPACE_PRECISE((v).z)); \
     } while (0)
 #define SET_GRAIN_AXIAL3(field, i, v)                                    \
     do {                                                                 \
-        SPACE_STORE(STORE_PRECISE((field)[3 * (size_t)(i)], (v).x));     \
-        SPACE_STORE(STORE_PRECISE((field)[3 * (size_t)(i) + 1], (v).y)); \
+        STORE_PRECISE((field)[3 * (size_t)(i)], SPACE_PRECISE((v).x));     \
+        STORE_PRECISE((field)[3 * (size_t)(i) + 1], SPACE_PRECISE((v).y)); \
         STORE_PRECISE((field)[3 * (size_t)(i) + 2], (v).z);              \
     } while (0)
 #define GRAIN_RADIUS(i) number(radius[i])
