@@ -61,9 +61,9 @@ static const stage_list stage_lists[] = {
 /* The order in which PAIR_FIELDS and PARTICLE_FIELDS name the slots. */
 static const slot_id pair_slots[] = {SLOT_TABLES, SLOT_COMPOSITION, SLOT_MOTION, SLOT_ROTATION, SLOT_BONDING, SLOT_BOND, SLOT_COHESION,
                                      SLOT_SLIP,        SLOT_TANGENTIAL, SLOT_ROLLING, SLOT_DISSIPATION, SLOT_DISSIPATION_HEAT, SLOT_LEDGER, SLOT_WALLS, SLOT_TEMPERATURE, SLOT_MODULUS, SLOT_SOFTENING, SLOT_EXPANSION, SLOT_CONDUCTIVITY, SLOT_CONDUCTION, SLOT_WALL_HEAT,
-                                     SLOT_INTEGRATOR, SLOT_PACKED};
+                                     SLOT_INTEGRATOR, SLOT_PACKED, SLOT_TOUCHED};
 static const slot_id particle_slots[] = {SLOT_MOTION, SLOT_ROTATION, SLOT_ORIENTATION, SLOT_TEMPERATURE, SLOT_SUBSTANCE, SLOT_TABLES, SLOT_CONDUCTIVITY, SLOT_RADIUS, SLOT_EXPANSION, SLOT_ENVIRONMENT,
-                                         SLOT_CONDUCTION, SLOT_SOURCE, SLOT_HEAT_STEPS, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY, SLOT_MODULUS, SLOT_DISSIPATION, SLOT_DISSIPATION_HEAT, SLOT_LEDGER, SLOT_INTEGRATOR, SLOT_PACKED};
+                                         SLOT_CONDUCTION, SLOT_SOURCE, SLOT_HEAT_STEPS, SLOT_THERMAL_GROUPS, SLOT_HEAT_TALLY, SLOT_MODULUS, SLOT_DISSIPATION, SLOT_DISSIPATION_HEAT, SLOT_LEDGER, SLOT_INTEGRATOR, SLOT_PACKED, SLOT_TOUCHED};
 
 int launch_argument_names(const live_laws *live, const char *kernel, const char **names, int max)
 {
@@ -304,6 +304,7 @@ clast_launch launch_values(const simulation *sim)
         .first_wall_group = sim->table.wall_base / sim->block,
         .first_wall_place = sim->table.wall_base,
         .loose = sim->table.skin > LOOSE_SKIN * sim->mean_radius,
+        .keeps_zeros = sim->plan.force_records == 0,
         .face_count = sim->face_count,
         .mover_count = sim->mover_count,
         .mixed = sim->mixed,

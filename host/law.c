@@ -32,6 +32,7 @@ static const struct {
     [SLOT_THERMAL_GROUPS] = {"thermal_groups", false}, [SLOT_HEAT_TALLY] = {"heat_tally", false},
     [SLOT_BODY] = {"body", true},                [SLOT_ORIENTATION] = {"orientation", false}, [SLOT_INTEGRATOR] = {"integrator", false},
     [SLOT_PACKED] = {"packed", false},
+    [SLOT_TOUCHED] = {"touched", false},
 };
 
 const char *slot_name(slot_id slot)

@@ -46,6 +46,7 @@ typedef enum slot_id {
     SLOT_ORIENTATION, /* derived: quaternions, where an output asks for them */
     SLOT_INTEGRATOR,
     SLOT_PACKED, /* derived: what pairs read of a grain once more in one line of a cache */
+    SLOT_TOUCHED, /* derived: which grains of a loose bed may have a contact in this step */
     SLOT_COUNT
 } slot_id;
 
@@ -73,7 +74,7 @@ typedef struct law_option {
 #define LAW_PROPERTIES_MAX 8
 #define LAW_FILES_MAX 3
 
-typedef enum field_extent { PER_PARTICLE, PER_RECORD, PER_SCENE /* faces of walls, prescribed motions: the host keeps them */ } field_extent;
+typedef enum field_extent { PER_PARTICLE, PER_RECORD, PER_RECORD_BLOCK, PER_SCENE /* faces of walls, prescribed motions: the host keeps them */ } field_extent;
 typedef enum field_type {
     FIELD_REAL,  /* double, or float in mixed precision */
     FIELD_EXACT, /* 64 bits in either: what takes small increments over many steps, or what an overlap is a small difference of */

@@ -187,9 +187,16 @@ void live_laws_of(const scene *scene, const bed *bed, live_laws *out)
         derive_heat(scene, out);
 }
 
-void live_pack(live_laws *all)
+/* Laws by which two bodies act on each other that do not touch, and sums over steps. */
+static bool acts_apart(const live_laws *live)
+{
+    return live->law[SLOT_BOND] || live->law[SLOT_COHESION] || live->law[SLOT_DISSIPATION];
+}
+
+void live_for_blocks(live_laws *all)
 {
     all->law[SLOT_PACKED] = all->blocks && all->law[SLOT_PRECISION] ? &law_packed_grains : NULL;
+    all->law[SLOT_TOUCHED] = all->blocks && !acts_apart(all) ? &law_touched_marks : NULL;
 }
 
 void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, live_laws *out)
@@ -237,7 +244,7 @@ static const char *none_file(slot_id slot)
         [SLOT_RADIUS] = "none/radius.cl",           [SLOT_EXPANSION] = "none/expansion.cl",
         [SLOT_DISSIPATION] = "none/dissipation.cl", [SLOT_LEDGER] = "none/ledger.cl",           [SLOT_DISSIPATION_HEAT] = "none/dissipation_heat.cl",
         [SLOT_BODY] = "none/body.cl",               [SLOT_ORIENTATION] = "none/orientation.cl", [SLOT_INTEGRATOR] = NULL,
-        [SLOT_PACKED] = "none/packed.cl",
+        [SLOT_PACKED] = "none/packed.cl",           [SLOT_TOUCHED] = "none/touched.cl",
     };
     return files[slot];
 }
@@ -387,7 +394,7 @@ void live_constants(const live_laws *live, const scene *scene, char *text, size_
     used = strlen(text);
     if (live->blocks)
         snprintf(text + used, size - used, "#define LANES %d\n#define PAIRS_ACT_APART %d\n", live->lanes > 0 ? live->lanes : 4,
-                 live->law[SLOT_BOND] || live->law[SLOT_COHESION] || live->law[SLOT_DISSIPATION]);
+                 acts_apart(live));
     used = strlen(text);
     snprintf(text + used, size - used, "#define CONTACT_CONSTANTS %d\n", live_constant_count(live));
     if (live->law[SLOT_COMPOSITION]) {

@@ -19,8 +19,9 @@ typedef struct live_laws {
 void live_laws_of(const scene *scene, const bed *bed, live_laws *out);
 /* The laws of one stage, from the union: what the stage switches off is gone. */
 void live_laws_in_stage(const scene *scene, const live_laws *all, int stage, live_laws *out);
-/* Where stages go by blocks in mixed precision, the pair stage reads packets of grains (kernels/stage/rows_packed.cl). */
-void live_pack(live_laws *all);
+/* What only stages that go by blocks have: packets of grains in mixed precision (kernels/stage/rows_packed.cl), marks of those that touch
+ * (kernels/effect/touched_marks.cl). */
+void live_for_blocks(live_laws *all);
 /* Files of the program that builds contact tables; it is the same for all laws, so that a new scene seldom waits for it. */
 #define LIVE_TABLE_FILES 9
 int live_table_files(const live_laws *live, const char **files);

@@ -252,7 +252,7 @@ status simulation_create(const scene *scene, const bed *bed, device *device, con
     live_laws_of(scene, bed, &sim->all);
     sim->all.blocks = scene->table.kernel_form == KERNEL_BLOCKS || (scene->table.kernel_form == KERNEL_AUTO && device->info.cpu);
     sim->mixed = sim->all.law[SLOT_PRECISION] != NULL;
-    live_pack(&sim->all);
+    live_for_blocks(&sim->all);
     sim->all.loop_items = step_loop_items(sim);
     sim->all.lanes = (int)device->info.float_lanes / (sim->mixed || device->info.float_lanes < 2 ? 1 : 2);
     measure_bed(sim, bed);

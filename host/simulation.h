@@ -294,6 +294,8 @@ status store_get(simulation *sim, cl_mem mem, field_type type, int64_t first, in
 status store_put_grains(simulation *sim, const stored_field *stored, int64_t count, const double *values, failure *why);
 status store_get_grains(simulation *sim, const stored_field *stored, int64_t count, double *values, failure *why);
 uint64_t field_bytes(const simulation *sim, const field *field);
+/* The same with so many elements between the components of a field of records. */
+uint64_t field_bytes_at(const simulation *sim, const field *field, int64_t record_stride);
 status store_write(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, const void *data, failure *why);
 status store_read(simulation *sim, cl_mem mem, uint64_t offset, uint64_t bytes, void *data, failure *why);
 status store_fill(simulation *sim, cl_mem mem, uint64_t bytes, failure *why);

@@ -61,11 +61,17 @@ uint64_t store_item(const simulation *sim, field_type type)
     return type == FIELD_INT || (type == FIELD_REAL && sim->mixed) ? 4 : 8;
 }
 
+uint64_t field_bytes_at(const simulation *sim, const field *field, int64_t record_stride)
+{
+    int64_t count = sim->stride;
+    if (field->extent == PER_RECORD || field->extent == PER_RECORD_BLOCK)
+        count = field->extent == PER_RECORD ? record_stride : record_stride / sim->block + 1;
+    return store_item(sim, field->type) * (uint64_t)(count * field->components);
+}
+
 uint64_t field_bytes(const simulation *sim, const field *field)
 {
-    uint64_t item = store_item(sim, field->type);
-    uint64_t stride = (uint64_t)(field->extent == PER_RECORD ? sim->table.record_stride : sim->stride);
-    return item * stride * (uint64_t)field->components;
+    return field_bytes_at(sim, field, sim->table.record_stride);
 }
 
 static status add_field(simulation *sim, const field *field, failure *why)

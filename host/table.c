@@ -349,9 +349,9 @@ static status carry_histories(simulation *sim, int64_t old_stride, failure *why)
     for (int f = 0; f < sim->field_count; f++) {
         stored_field *stored = &sim->field[f];
         const field *field = stored->field;
-        if (field->extent != PER_RECORD)
+        if (field->extent != PER_RECORD && field->extent != PER_RECORD_BLOCK)
             continue;
-        uint64_t old_bytes = store_item(sim, field->type) * (uint64_t)(old_stride * field->components);
+        uint64_t old_bytes = field_bytes_at(sim, field, old_stride);
         cl_mem old = stored->mem;
         if (field->role != FIELD_HISTORY) {
             if (grown)

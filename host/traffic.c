@@ -104,10 +104,23 @@ static double element_bytes(const simulation *sim, const char *type)
     return strncmp(type, "int", 3) == 0 || strncmp(type, "uint", 4) == 0 || strncmp(type, "float", 5) == 0 ? 4.0 : 0.0;
 }
 
+/* Marks of what touches: only in a loose bed does anybody look at them. */
+static bool is_left_alone(const simulation *sim, const field *field)
+{
+    const law *marks = sim->live.law[SLOT_TOUCHED];
+    bool one = false;
+    for (int f = 0; marks && f < LAW_ARGUMENTS_MAX; f++)
+        one = one || marks->pair_fields[f] == field;
+    return one && !launch_values(sim).loose;
+}
+
 static double field_traffic(const simulation *sim, const field *field, bool constant)
 {
-    double count = field->extent == PER_RECORD ? (double)sim->table.record_count : field->extent == PER_PARTICLE ? (double)sim->count : 0.0;
-    return count * field->components * (double)store_item(sim, field->type) * (constant || field->role == FIELD_RESULT ? 1.0 : 2.0);
+    if (is_left_alone(sim, field))
+        return 0.0;
+    double records = (double)sim->table.record_count,
+           count[] = {[PER_PARTICLE] = (double)sim->count, [PER_RECORD] = records, [PER_RECORD_BLOCK] = records / sim->block, [PER_SCENE] = 0.0};
+    return count[field->extent] * field->components * (double)store_item(sim, field->type) * (constant || field->role == FIELD_RESULT ? 1.0 : 2.0);
 }
 
 /* In the kernel of the loop the arguments of both stages stand side by side under names of their own. */

@@ -51,6 +51,19 @@ const law law_packed_grains = {
     .particle_fields = {&field_packed},
 };
 
+static const field field_touched = {"touched", PER_PARTICLE, FIELD_INT, 1, FIELD_RESULT, "", "1: the grain may have a contact in this step"};
+static const field field_quiet_lots = {"quiet_lots", PER_RECORD_BLOCK, FIELD_INT, 1, FIELD_RESULT, "", "lots of records whose forces are 0, a bit each"};
+
+const law law_touched_marks = {
+    .name = "marks",
+    .slot = SLOT_TOUCHED,
+    .doc = "In a loose bed, which grains may have a contact: the others have no forces to be summed.",
+    .source = "",
+    .kernel_file = "effect/touched_marks.cl",
+    .pair_fields = {&field_touched, &field_quiet_lots},
+    .particle_fields = {&field_touched},
+};
+
 const law law_periodic_box = {
     .name = "box",
     .slot = SLOT_PERIODIC,

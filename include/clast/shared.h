@@ -46,6 +46,7 @@ typedef struct clast_launch {
     clast_i32 force_shift;      /* the pair stage puts the force of record k at k - force_shift */
     clast_i32 first_wall_place; /* forces from here on are those of walls, where the particle stage finds them */
     clast_i32 loose;            /* 1: few records touch, and it pays to look which (on CPUs) */
+    clast_i32 keeps_zeros;      /* 1: forces of a record stand where nobody else's do */
     clast_i32 step;             /* counts from the start of the batch */
     clast_i32 face_row;         /* row of the wall and mover tables for this step */
     clast_i32 mover_row;

@@ -101,10 +101,13 @@ INLINE ulong8 widest(ulong8 x)
     return x + (ulong8)(1);
 }
 
-/* some[lot]: whether any two of a lot may touch, or whether nobody is to look. Only then are the rest of their rows filled. */
-INLINE void pair_fill_lots(const clast_launch *launch, int k, real *owners, real *others, int *some PAIR_DECLARE)
+/* What is to be done with a lot. */
+#define LOT_OF_PAIRS     1 /* two of it may touch, or nobody is to look: only then are the rest of its rows filled */
+#define LOT_OF_STRANGERS 2
+#define LOT_QUIET        3 /* strangers still, whose zeros stand there */
+INLINE void pair_fill_lots(const clast_launch *launch, int group, int k, real *owners, real *others, int *kind PAIR_DECLARE)
 {
-    int near[CLAST_BLOCK];
+    int near[CLAST_BLOCK], was_quiet = TOUCHED_QUIET(launch, group), quiet = 0;
     bool all = PAIRS_ACT_APART || !launch->loose;
     if (!all) {
         VECTOR_LOOP
@@ -112,21 +115,30 @@ INLINE void pair_fill_lots(const clast_launch *launch, int k, real *owners, real
             near[lane] = pair_is_near(launch, owners, others, lane);
     }
     for (int lot = 0; lot < LOTS; lot++) {
-        some[lot] = all;
+        int some = all;
         for (int lane = LOT * lot; !all && lane < LOT * (lot + 1); lane++)
-            some[lot] |= near[lane];
-        for (int lane = LOT * lot; some[lot] && lane < LOT * (lot + 1); lane += 4) {
+            some |= near[lane];
+        kind[lot] = some ? LOT_OF_PAIRS : was_quiet >> lot & 1 ? LOT_QUIET : LOT_OF_STRANGERS;
+        quiet |= !some << lot;
+        for (int lane = LOT * lot; some && !all && lane < LOT * (lot + 1); lane++)
+            if (near[lane]) {
+                TOUCHED_MARK(owner[k + lane]);
+                TOUCHED_MARK(other[k + lane]);
+            }
+        for (int lane = LOT * lot; some && lane < LOT * (lot + 1); lane += 4) {
             rows_fill_rest(vload4(0, owner + k + lane), owners + lane PAIR_PASS);
             rows_fill_rest(vload4(0, other + k + lane), others + lane PAIR_PASS);
         }
     }
+    if (!all)
+        TOUCHED_SET_QUIET(group, quiet);
 }
 
 /* Lots of one kind in a row go in one loop, so that a block in which all touch costs what it would without a look. */
 INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
 {
     real owners[ROWS_OF_GRAIN * CLAST_BLOCK], others[ROWS_OF_GRAIN * CLAST_BLOCK];
-    int k = (int)(widest((ulong8)((ulong)(CLAST_BLOCK * group))).s0 - 1), some[LOTS];
+    int k = (int)(widest((ulong8)((ulong)(CLAST_BLOCK * group))).s0 - 1), kind[LOTS];
     bool all = PAIRS_ACT_APART || !launch->loose;
     rows_fill_places(owner + k, owners PAIR_PASS);
     rows_fill_places(other + k, others PAIR_PASS);
@@ -134,15 +146,15 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
         grains_ask_ahead(other, k + GRAINS_AHEAD * CLAST_BLOCK PAIR_PASS);
         records_ask_ahead(launch, k + RECORDS_AHEAD * CLAST_BLOCK, k + (GRAINS_AHEAD + RECORDS_AHEAD) * CLAST_BLOCK PAIR_PASS);
     }
-    pair_fill_lots(launch, k, owners, others, some PAIR_PASS);
+    pair_fill_lots(launch, group, k, owners, others, kind PAIR_PASS);
     for (int lot = 0, end; lot < LOTS; lot = end) {
-        for (end = lot + 1; end < LOTS && (all || some[end] == some[lot]);)
+        for (end = lot + 1; end < LOTS && (all || kind[end] == kind[lot]);)
             end++;
-        if (all || some[lot]) {
+        if (all || kind[lot] == LOT_OF_PAIRS) {
             VECTOR_LOOP
             for (int lane = LOT * lot; lane < LOT * end; lane++)
                 pair_of_rows(launch, owners, others, lane, k + lane PAIR_PASS);
-        } else {
+        } else if (kind[lot] == LOT_OF_STRANGERS) {
             VECTOR_LOOP
             for (int lane = LOT * lot; lane < LOT * end; lane++)
                 pair_of_strangers(launch, owners, others, lane, k + lane PAIR_PASS);
@@ -160,6 +172,8 @@ INLINE void pair_wall_block(const clast_launch *launch, int group PAIR_DECLARE)
         grains_ask_ahead(owner, CLAST_BLOCK * group PAIR_PASS);
         records_ask_ahead(launch, CLAST_BLOCK * group, CLAST_BLOCK * group PAIR_PASS);
     }
+    for (int lane = 0; lane < CLAST_BLOCK && launch->loose; lane++)
+        TOUCHED_MARK(owner[CLAST_BLOCK * group + lane]);
     WALLS_LOOP
     for (int lane = 0; lane < CLAST_BLOCK; lane++)
         PAIR_OF_WALLS(launch, CLAST_BLOCK * group + lane PAIR_PASS);
@@ -256,9 +270,10 @@ INLINE void particle_block(const clast_launch *launch, __global clast_control *c
         moving_fill((int4)(first + lane, first + lane + 1, first + lane + 2, first + lane + 3), rows + lane PARTICLE_PASS);
     slots_ask_ahead(launch, first + 2 * PARTICLE_LANES PARTICLE_PASS);
     for (int lane = 0; lane < PARTICLE_LANES; lane++) {
-        vec3 f, t;
-        grain_heat h;
-        particle_gather(launch, first / CLAST_BLOCK, first % CLAST_BLOCK + lane, &f, &t, &h PARTICLE_PASS);
+        vec3 f = v3(R(0.0), R(0.0), R(0.0)), t = f;
+        grain_heat h = {0};
+        if (TOUCHED_TAKE(launch, first + lane))
+            particle_gather(launch, first / CLAST_BLOCK, first % CLAST_BLOCK + lane, &f, &t, &h PARTICLE_PASS);
         ROW_SET_POLAR3(rows, ROW_FORCE, lane, f);
         ROTATION_TO_ROWS(rows, ROW_TORQUE, lane, t);
         CONDUCTION_TO_ROWS(rows, ROW_HEAT, lane, h);

@@ -107,7 +107,7 @@ static int files_of(const live_laws *live, const char **files)
 {
     const char *table[LIVE_TABLE_FILES];
     live_laws packed = *live;
-    live_pack(&packed);
+    live_for_blocks(&packed);
     int count = live_files(&packed, files, FILES_MAX - 1 - LIVE_TABLE_FILES), tables = live_table_files(live, table);
     for (int f = 0, own = count; f < tables; f++) { /* some are in both */
         int same = 0;
@@ -323,10 +323,12 @@ static void check_on_device(const live_laws *live)
         clGetProgramBuildInfo(program, case_device()->info.id, CL_PROGRAM_BUILD_LOG, sizeof log, log, NULL);
         fail_msg("the program with%s does not build: %s", what, log);
     }
+    live_laws packed = *live;
+    live_for_blocks(&packed);
     for (size_t k = 0; k < sizeof kernels / sizeof *kernels; k++)
-        check_arguments(program, live, kernels[k], what);
+        check_arguments(program, &packed, kernels[k], what);
     if (live->law[SLOT_TEMPERATURE])
-        check_arguments(program, live, "heat_conductances", what);
+        check_arguments(program, &packed, "heat_conductances", what);
     clReleaseProgram(program);
     free(text);
 }
