@@ -383,6 +383,7 @@ static status resume_from(run *r, const run_options *options, const bundle *stat
     schedule_init(&r->schedule, r->scene);
     TRY(run_load_state(r, state, from, why));
     r->first_step = r->sim->step;
+    r->first_rebuilds = r->sim->rebuilds;
     TRY(open_output(r, options->out == NULL, why));
     if (options->out) {
         TRY(output_observe(r->output, why));

@@ -26,7 +26,7 @@ typedef struct run {
     int64_t beyond_limit; /* looks in a row at which the step was past twice its limit */
     bool quiet, terminal;
     double started, shown, chunk_steps, stepping;
-    int64_t first_step;
+    int64_t first_step, first_rebuilds; /* where this run begins: one that is resumed, at its checkpoint */
 } run;
 
 /* run_say.c: what goes to standard error */

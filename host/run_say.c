@@ -51,15 +51,15 @@ void run_summarise(run *r)
 {
     const simulation *sim = r->sim;
     double wall = clock_seconds() - r->started;
-    int64_t steps = sim->step - r->first_step;
+    int64_t steps = sim->step - r->first_step, rebuilds = sim->rebuilds - r->first_rebuilds;
     char text[512];
     failure ignored;
     snprintf(text, sizeof text,
              "%lld steps of %lld grains in %.3g s: %.3g particle-steps/s; %lld tables, %.3g s (%.1f %%), one in %.3g steps, skin %.3g m; %.0f bytes a grain on "
              "the device",
              (long long)steps, (long long)sim->id_count, wall, wall > 0.0 ? (double)steps * (double)sim->id_count / wall : 0.0,
-             (long long)sim->rebuilds, sim->rebuild_seconds, wall > 0.0 ? 100.0 * sim->rebuild_seconds / wall : 0.0,
-             sim->rebuilds ? (double)steps / (double)sim->rebuilds : 0.0, sim->table.skin, (double)sim->bytes / (double)sim->id_count);
+             (long long)rebuilds, sim->rebuild_seconds, wall > 0.0 ? 100.0 * sim->rebuild_seconds / wall : 0.0,
+             rebuilds > 0 ? (double)steps / (double)rebuilds : 0.0, sim->table.skin, (double)sim->bytes / (double)sim->id_count);
     run_tell(r, "%s", text);
     output_text(r->output, "summary", text, &ignored);
 }

@@ -3,6 +3,9 @@
 #define WALLS_CONTACT(launch, face, x, v, c, touch) \
     walls_contact(faces + (launch)->face_row * (launch)->face_count, (launch)->face_count, face, x, v, c, touch)
 
+/* Whether a grain may touch a face: surely so where it does. */
+#define WALLS_NEAR(launch, face, x, r) walls_near(faces + (launch)->face_row * (launch)->face_count + (face), x, r)
+
 typedef struct wall_touch {
     precise3 point;   /* of the wall, nearest to the grain's centre */
     vec3 velocity;    /* of the wall there */

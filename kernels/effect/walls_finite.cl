@@ -11,6 +11,13 @@ INLINE precise walls_clamp(precise x, precise limit)
     return precise_less(x, low) ? low : x;
 }
 
+/* By its plane alone. */
+INLINE bool walls_near(const __global clast_face *face, precise3 x, real r)
+{
+    real height = rounded(precise3_dot(precise3_sub(x, PRECISE3(face->origin)), PRECISE3(face->normal)));
+    return walls_is_round(face) || (height < R(1.00001) * r && (face->shape == CLAST_FACE_PLANE || -height < R(1.00001) * r));
+}
+
 /* Inside the border by more than rounding, so that a grain right over a seam is on the edge of both faces and not on both faces. */
 INLINE bool walls_within(const __global clast_face *face, real u, real v)
 {

@@ -2,6 +2,11 @@
  * (stage/by_blocks.cl). */
 #define WALLS_LOOP VECTOR_LOOP
 #define PAIR_OF_WALLS pair_of_plane
+INLINE bool walls_near(const __global clast_face *face, precise3 x, real r)
+{
+    return rounded(precise3_dot(precise3_sub(x, PRECISE3(face->origin)), PRECISE3(face->normal))) < R(1.00001) * r;
+}
+
 INLINE void walls_contact(const __global clast_face *row, int face_count, int index, precise3 x, vec3 velocity_i, contact *c, wall_touch *touch)
 {
     const __global clast_face *face = row + index;

@@ -125,9 +125,14 @@ INLINE void pair_fill_lots(const clast_launch *launch, int group, int k, real *o
                 TOUCHED_MARK(owner[k + lane]);
                 TOUCHED_MARK(other[k + lane]);
             }
-        for (int lane = LOT * lot; some && lane < LOT * (lot + 1); lane += 4) {
-            rows_fill_rest(vload4(0, owner + k + lane), owners + lane PAIR_PASS);
-            rows_fill_rest(vload4(0, other + k + lane), others + lane PAIR_PASS);
+    }
+    for (int lane = 0; lane < CLAST_BLOCK; lane += ROWS_FILLED) {
+        bool some = all;
+        for (int lot = lane / LOT; lot <= (lane + ROWS_FILLED - 1) / LOT; lot++)
+            some |= kind[lot] == LOT_OF_PAIRS;
+        if (some) {
+            rows_fill_rest(owner + k + lane, all, owners + lane PAIR_PASS);
+            rows_fill_rest(other + k + lane, all, others + lane PAIR_PASS);
         }
     }
     if (!all)
@@ -140,8 +145,8 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
     real owners[ROWS_OF_GRAIN * CLAST_BLOCK], others[ROWS_OF_GRAIN * CLAST_BLOCK];
     int k = (int)(widest((ulong8)((ulong)(CLAST_BLOCK * group))).s0 - 1), kind[LOTS];
     bool all = PAIRS_ACT_APART || !launch->loose;
-    rows_fill_places(owner + k, owners PAIR_PASS);
-    rows_fill_places(other + k, others PAIR_PASS);
+    rows_fill_places(owner + k, all, owners PAIR_PASS);
+    rows_fill_places(other + k, all, others PAIR_PASS);
     if (launch->first_wall_group >= BLOCKS_TO_ASK && group + GRAINS_AHEAD < launch->first_wall_group) {
         grains_ask_ahead(other, k + GRAINS_AHEAD * CLAST_BLOCK PAIR_PASS);
         records_ask_ahead(launch, k + RECORDS_AHEAD * CLAST_BLOCK, k + (GRAINS_AHEAD + RECORDS_AHEAD) * CLAST_BLOCK PAIR_PASS);
@@ -165,6 +170,24 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
 /* Of a wall without borders, whose contact takes no loop: as vector code. */
 PAIR_OF_WALL(INLINE, pair_of_plane, PAIR_STORE_STATE)
 
+/* In a loose bed: the lots in which nobody touches a wall are left alone once their zeros stand there. */
+INLINE void pair_wall_lots(const clast_launch *launch, int group PAIR_DECLARE)
+{
+    int was_quiet = TOUCHED_QUIET(launch, group), quiet = 0;
+    for (int lot = 0; lot < LOTS; lot++) {
+        int first = CLAST_BLOCK * group + LOT * lot, some = 0;
+        for (int k = first; k < first + LOT; k++)
+            if (WALLS_NEAR(launch, other[k], PRECISE_GRAIN_POLAR3(position, owner[k]), GRAIN_RADIUS(owner[k]))) {
+                TOUCHED_MARK(owner[k]);
+                some = 1;
+            }
+        for (int k = first; (some || !(was_quiet >> lot & 1)) && k < first + LOT; k++)
+            pair_of_wall(launch, k PAIR_PASS);
+        quiet |= !some << lot;
+    }
+    TOUCHED_SET_QUIET(group, quiet);
+}
+
 /* Walls' records come first in a step, when no grain has been looked at for long: all that a block needs is asked for at once. */
 INLINE void pair_wall_block(const clast_launch *launch, int group PAIR_DECLARE)
 {
@@ -172,8 +195,10 @@ INLINE void pair_wall_block(const clast_launch *launch, int group PAIR_DECLARE)
         grains_ask_ahead(owner, CLAST_BLOCK * group PAIR_PASS);
         records_ask_ahead(launch, CLAST_BLOCK * group, CLAST_BLOCK * group PAIR_PASS);
     }
-    for (int lane = 0; lane < CLAST_BLOCK && launch->loose; lane++)
-        TOUCHED_MARK(owner[CLAST_BLOCK * group + lane]);
+    if (!PAIRS_ACT_APART && launch->loose) {
+        pair_wall_lots(launch, group PAIR_PASS);
+        return;
+    }
     WALLS_LOOP
     for (int lane = 0; lane < CLAST_BLOCK; lane++)
         PAIR_OF_WALLS(launch, CLAST_BLOCK * group + lane PAIR_PASS);

@@ -22,9 +22,10 @@ INLINE void grain_ask_for(size_t i PAIR_DECLARE)
     TEMPERATURE_ASK_FOR(i);
 }
 
-/* Of the grains `which` of a block of records on one side what tells whether they may touch. */
-INLINE void rows_fill_places(__global const int *which, real *to PAIR_DECLARE)
+/* Of the grains `which` of a block of records on one side what tells whether they may touch; `all`: the rest is wanted in any case. */
+INLINE void rows_fill_places(__global const int *which, const bool all, real *to PAIR_DECLARE)
 {
+    (void)all;
     __global const ulong *radii = (__global const ulong *)radius;
     for (int lane = 0; lane < CLAST_BLOCK; lane += 4) {
         int4 i = vload4(0, which + lane);
@@ -33,9 +34,12 @@ INLINE void rows_fill_places(__global const int *which, real *to PAIR_DECLARE)
     }
 }
 
-/* The rest of four of them. */
-INLINE void rows_fill_rest(int4 i, real *to PAIR_DECLARE)
+/* The rest of ROWS_FILLED of them. */
+#define ROWS_FILLED 4
+INLINE void rows_fill_rest(__global const int *which, const bool all, real *to PAIR_DECLARE)
 {
+    (void)all;
+    int4 i = vload4(0, which);
     vstore4((real4)(mass[i.s0], mass[i.s1], mass[i.s2], mass[i.s3]), 0, ROW(to, ROW_MASS));
     rows_polar3(velocity, i, ROW(to, ROW_VELOCITY));
     ROTATION_ROWS_FILL(i, ROW(to, ROW_SPIN));

@@ -2,6 +2,7 @@
  * its fields stand in, and one load instead of six. In the order of the rows: position and radius as pairs of floats, mass, velocity, spin, and the
  * temperature last (docs/performance.md). Sixteen of them are turned into rows by 64 shuffles. */
 #define PACKET 16
+#define ROWS_FILLED 16
 /* Packets of a block fit the first cache. */
 #define GRAINS_AHEAD 1
 #define ROW_POSITION 0
@@ -27,11 +28,10 @@ INLINE void grain_ask_for(size_t i PAIR_DECLARE)
 #define TWOS_LOW(a, b) (float16)((a).s01, (b).s01, (a).s45, (b).s45, (a).s89, (b).s89, (a).scd, (b).scd)
 #define TWOS_HIGH(a, b) (float16)((a).s23, (b).s23, (a).s67, (b).s67, (a).sab, (b).sab, (a).sef, (b).sef)
 /* Four packets: number 4 q + n of each, in quarter q of the nth result. */
-#define FOUR_PACKETS(n0, n1, n2, n3, at)                                                                           \
+#define FOUR_PACKETS(n0, n1, n2, n3, PACKET_OF, at)                                                                \
     float16 n0, n1, n2, n3;                                                                                        \
     do {                                                                                                           \
-        float16 a = vload16((size_t)which[at], packed), b = vload16((size_t)which[(at) + 1], packed);              \
-        float16 c = vload16((size_t)which[(at) + 2], packed), d = vload16((size_t)which[(at) + 3], packed);        \
+        float16 a = PACKET_OF(at), b = PACKET_OF((at) + 1), c = PACKET_OF((at) + 2), d = PACKET_OF((at) + 3);      \
         float16 ab = PAIRS_LOW(a, b), cd = PAIRS_LOW(c, d);                                                        \
         n0 = TWOS_LOW(ab, cd);                                                                                     \
         n1 = TWOS_HIGH(ab, cd);                                                                                    \
@@ -40,6 +40,9 @@ INLINE void grain_ask_for(size_t i PAIR_DECLARE)
         n2 = TWOS_LOW(ab, cd);                                                                                     \
         n3 = TWOS_HIGH(ab, cd);                                                                                    \
     } while (0)
+#define WHOLE_PACKET(at) vload16((size_t)which[at], packed)
+/* The same half of two packets. */
+#define TWO_HALVES(at) (float16)(vload8(2 * (size_t)which[at] + part, packed), vload8(2 * (size_t)which[(at) + 4] + part, packed))
 /* Rows n, n + 4, n + 8, n + 12 from the nth results of four fours. */
 #define ROWS_OF_FOURS(n, a, b, c, d)                                                                               \
     do {                                                                                                           \
@@ -54,27 +57,52 @@ INLINE void grain_ask_for(size_t i PAIR_DECLARE)
 /* All numbers of the grains `which` of 16 records on one side. */
 INLINE void rows_unpack(__global const int *which, real *to PAIR_DECLARE)
 {
-    FOUR_PACKETS(a0, a1, a2, a3, 0);
-    FOUR_PACKETS(b0, b1, b2, b3, 4);
-    FOUR_PACKETS(c0, c1, c2, c3, 8);
-    FOUR_PACKETS(d0, d1, d2, d3, 12);
+    FOUR_PACKETS(a0, a1, a2, a3, WHOLE_PACKET, 0);
+    FOUR_PACKETS(b0, b1, b2, b3, WHOLE_PACKET, 4);
+    FOUR_PACKETS(c0, c1, c2, c3, WHOLE_PACKET, 8);
+    FOUR_PACKETS(d0, d1, d2, d3, WHOLE_PACKET, 12);
     ROWS_OF_FOURS(0, a0, b0, c0, d0);
     ROWS_OF_FOURS(1, a1, b1, c1, d1);
     ROWS_OF_FOURS(2, a2, b2, c2, d2);
     ROWS_OF_FOURS(3, a3, b3, c3, d3);
 }
 
-INLINE void rows_fill_places(__global const int *which, real *to PAIR_DECLARE)
+/* Rows n and n + 4 of those of a half, from the nth results of two times two halves. */
+#define ROWS_OF_HALVES(n, a, b)                                                                                    \
+    do {                                                                                                           \
+        vstore16((float16)((a).s0123, (a).s89ab, (b).s0123, (b).s89ab), 0, ROW(to, 8 * part + (n)));               \
+        vstore16((float16)((a).s4567, (a).scdef, (b).s4567, (b).scdef), 0, ROW(to, 8 * part + (n) + 4));           \
+    } while (0)
+
+/* The lower half of them (0), which is what tells whether two may touch, or the upper (1). */
+INLINE void rows_unpack_half(__global const int *which, const int part, real *to PAIR_DECLARE)
 {
-    for (int lane = 0; lane < CLAST_BLOCK; lane += 16)
-        rows_unpack(which + lane, to + lane PAIR_PASS);
+    FOUR_PACKETS(a0, a1, a2, a3, TWO_HALVES, 0);
+    FOUR_PACKETS(b0, b1, b2, b3, TWO_HALVES, 8);
+    ROWS_OF_HALVES(0, a0, b0);
+    ROWS_OF_HALVES(1, a1, b1);
+    ROWS_OF_HALVES(2, a2, b2);
+    ROWS_OF_HALVES(3, a3, b3);
 }
 
-/* What is in no packet. */
-INLINE void rows_fill_rest(int4 i, real *to PAIR_DECLARE)
+INLINE void rows_fill_places(__global const int *which, const bool all, real *to PAIR_DECLARE)
 {
-    (void)i;
-    INTEGRATOR_ROWS_FILL(i, ROW(to, ROW_PAST));
+    for (int lane = 0; lane < CLAST_BLOCK; lane += ROWS_FILLED)
+        if (all)
+            rows_unpack(which + lane, to + lane PAIR_PASS);
+        else
+            rows_unpack_half(which + lane, 0, to + lane PAIR_PASS);
+}
+
+INLINE void rows_fill_rest(__global const int *which, const bool all, real *to PAIR_DECLARE)
+{
+    if (!all)
+        rows_unpack_half(which, 1, to PAIR_PASS);
+    for (int lane = 0; lane < ROWS_FILLED; lane += 4) {
+        int4 i = vload4(0, which + lane);
+        (void)i;
+        INTEGRATOR_ROWS_FILL(i, ROW(to + lane, ROW_PAST));
+    }
 }
 
 /* Grains that have moved, or that a batch begins with. */
