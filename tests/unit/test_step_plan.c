@@ -45,6 +45,9 @@ static void open_bed_in(sim_case *c, const char *rest, bool boulders, const char
     simulation_set_step(c->sim, 1e-5);
 }
 
+/* With a skin so wide that lots of records in which none touches are looked for. */
+#define LOOSE_CHUNKS "256, skin_m: 4.0e-4"
+
 static void open_bed(sim_case *c, const char *rest, bool boulders, const char *chunk)
 {
     open_bed_in(c, rest, boulders, chunk, "two_kernels");
@@ -169,11 +172,14 @@ static void test_order(void **state)
 static void test_forces_share_places(void **state)
 {
     (void)state;
-    sim_case c;
-    open_bed(&c, COMMON GRAINS FLOOR, false, "256");
-    assert_true(c.sim->plan.force_records > 0);
-    assert_true(2 * c.sim->plan.force_records <= c.sim->table.wall_base);
-    case_close(&c);
+    for (int loose = 0; loose < 2; loose++) {
+        sim_case c;
+        open_bed(&c, COMMON GRAINS FLOOR, false, loose ? LOOSE_CHUNKS : "256");
+        assert_true(c.sim->plan.force_records > 0);
+        assert_true(2 * c.sim->plan.force_records <= c.sim->table.wall_base);
+        assert_int_equal(launch_values(c.sim).loose, loose);
+        case_close(&c);
+    }
 }
 
 /* Streams do not wait for one another, so they may go in any order. */
@@ -243,7 +249,8 @@ static void test_bits(void **state)
         const char *rest, *chunk;
         bool boulders;
     } cases[] = {
-        {COMMON GRAINS FLOOR, "64", false}, {COMMON GRAINS FLOOR, "512", false}, {COMMON GRAINS FLOOR, "256", true}, {COMMON GRAINS PERIODIC, "256", false}};
+        {COMMON GRAINS FLOOR, "64", false}, {COMMON GRAINS FLOOR, "512", false}, {COMMON GRAINS FLOOR, "256", true}, {COMMON GRAINS PERIODIC, "256", false},
+        {COMMON GRAINS FLOOR, LOOSE_CHUNKS, false}};
     size_t count = (size_t)(9 * 8 * 8 * 22);
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         double *whole = run(cases[n].rest, cases[n].boulders, "1000000000"), *chunked = run(cases[n].rest, cases[n].boulders, cases[n].chunk);
