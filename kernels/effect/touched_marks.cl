@@ -11,8 +11,10 @@
 
 INLINE bool touched_take(const clast_launch *launch, __global int *mark)
 {
+    if (!launch->loose)
+        return true;
     bool marked = *mark != 0;
     if (marked)
         *mark = 0;
-    return marked || !launch->loose;
+    return marked;
 }
