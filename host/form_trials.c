@@ -2,7 +2,7 @@
  *
  * Nothing foretells it, since a team waits by looking and so loses where other processes want the cores. Results are the same to the bit, so
  * the batches of the run itself are timed: one way is the best of late, and the others are tried from time to time. What a step costs changes with what the
- * grains do, so a trial is held against the batches just before it, and never against older ones.
+ * grains do, so a trial is held against the best's batches of late, the last of which were just before it.
  *
  *   best, settling -> best, timed -> trial, settling -> trial, timed -> best, settling -> ...
  *

@@ -74,7 +74,12 @@ typedef struct law_option {
 #define LAW_PROPERTIES_MAX 8
 #define LAW_FILES_MAX 3
 
-typedef enum field_extent { PER_PARTICLE, PER_RECORD, PER_RECORD_BLOCK, PER_SCENE /* faces of walls, prescribed motions: the host keeps them */ } field_extent;
+typedef enum field_extent {
+    PER_PARTICLE,
+    PER_RECORD,
+    PER_RECORD_BLOCK, /* of as many records as a work-group takes */
+    PER_SCENE         /* faces of walls, prescribed motions: the host keeps them */
+} field_extent;
 typedef enum field_type {
     FIELD_REAL,  /* double, or float in mixed precision */
     FIELD_EXACT, /* 64 bits in either: what takes small increments over many steps, or what an overlap is a small difference of */

@@ -90,7 +90,7 @@ static void collect_memory(const simulation *sim, plan *out)
     out->field_count = sim->field_count;
     for (int f = 0; f < sim->field_count; f++) {
         const field *of = sim->field[f].field;
-        out->field[f] = (plan_field){of->name, of->extent == PER_RECORD, field_bytes(sim, of)};
+        out->field[f] = (plan_field){of->name, of->extent, field_bytes(sim, of)};
         fields += out->field[f].bytes;
         if (of->extent == PER_RECORD)
             record += (double)store_item(sim, of->type) * of->components;

@@ -21,7 +21,7 @@ typedef struct plan_stage {
 
 typedef struct plan_field {
     const char *name;
-    bool per_record;
+    field_extent per;
     uint64_t bytes;
 } plan_field;
 

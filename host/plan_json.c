@@ -100,11 +100,12 @@ static json_t *stages(const plan *p)
 
 static json_t *memory(const plan *p)
 {
+    static const char *const per[] = {[PER_PARTICLE] = "particle", [PER_RECORD] = "contact", [PER_RECORD_BLOCK] = "block of contacts", [PER_SCENE] = "scene"};
     json_t *fields = json_array(), *out = json_object();
     for (int f = 0; f < p->field_count; f++) {
         json_t *entry = json_object();
         json_object_set_new(entry, "name", json_string(p->field[f].name));
-        json_object_set_new(entry, "per", json_string(p->field[f].per_record ? "contact" : "particle"));
+        json_object_set_new(entry, "per", json_string(per[p->field[f].per]));
         json_object_set_new(entry, "bytes", bytes_of(p->field[f].bytes));
         json_object_set_new(entry, "bytes_per_particle", number(plan_bytes_per_particle(p, p->field[f].bytes)));
         json_array_append_new(fields, entry);

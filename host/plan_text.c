@@ -234,11 +234,13 @@ static void print_row(const plan *p, const char *name, const char *note, uint64_
 
 static void print_memory(const plan *p)
 {
+    static const char *const per[] = {
+        [PER_PARTICLE] = "per grain", [PER_RECORD] = "per contact", [PER_RECORD_BLOCK] = "per block", [PER_SCENE] = "per scene"};
     char usable[32];
     device_bytes(p->device->usable_bytes, usable, sizeof usable);
     printf("\n%-35s%13s%12s\n", "Memory", "bytes a grain", "total");
     for (int f = 0; f < p->field_count; f++)
-        print_row(p, p->field[f].name, p->field[f].per_record ? "per contact" : "per grain", p->field[f].bytes);
+        print_row(p, p->field[f].name, per[p->field[f].per], p->field[f].bytes);
     print_row(p, "contact table", "", p->table_bytes);
     print_row(p, "other", "", p->other_bytes);
     print_row(p, "all", "", p->bytes);

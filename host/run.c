@@ -297,6 +297,8 @@ static const char *type_name(field_type type)
 /* The live laws of every slot, and what is stored for them. */
 static char *plan_of(const simulation *sim)
 {
+    static const char *const a[] = {
+        [PER_PARTICLE] = "grain", [PER_RECORD] = "contact record", [PER_RECORD_BLOCK] = "block of contact records", [PER_SCENE] = "scene"};
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
@@ -307,7 +309,7 @@ static char *plan_of(const simulation *sim)
             fprintf(out, "%s: %s (%s)\n", slot_name(slot), sim->all.law[slot]->name, sim->all.law[slot]->kernel_file);
     for (int f = 0; f < sim->field_count; f++)
         fprintf(out, "field %s: %d x %s a %s\n", sim->field[f].field->name, sim->field[f].field->components,
-                type_name(sim->field[f].field->type), sim->field[f].field->extent == PER_PARTICLE ? "grain" : "contact record");
+                type_name(sim->field[f].field->type), a[sim->field[f].field->extent]);
     fclose(out);
     return text;
 }

@@ -197,8 +197,6 @@ static status create_buffers(simulation *sim, failure *why)
     if (live_keeps_half_steps(&sim->all)) {
         TRY(store_buffer(sim, &sim->velocity_now, field_bytes(sim, &field_velocity), "synchronised velocities", why));
         TRY(store_buffer(sim, &sim->spin_now, store_find(sim, "spin") ? field_bytes(sim, &field_spin) : 0, "synchronised spins", why));
-        TRY(store_fill(sim, sim->velocity_now, field_bytes(sim, &field_velocity), why)); /* what is 0 in two dimensions is never written */
-        TRY(store_fill(sim, sim->spin_now, store_find(sim, "spin") ? field_bytes(sim, &field_spin) : 0, why));
         if (sim->all.law[SLOT_LEDGER])
             TRY(store_buffer(sim, &sim->ledger_now, LEDGER_FIELDS * field_bytes(sim, &field_dissipated), "the ledger's last half step",
                              why));

@@ -172,7 +172,7 @@ INLINE real power_of(real x, real y)
         STORE_PRECISE((field)[3 * (size_t)(i) + 2], (v).z);  \
     } while (0)
 /* Polar vectors (position, velocity, force) lie in the plane of a scene of two dimensions, axial ones (spin, moment) along its normal. What is always
- * 0 there is neither read nor stored (effect/dimensions_two.cl). */
+ * 0 there is not read, and of records not stored; of grains it is stored as 0, since three numbers side by side go as one run (effect/dimensions_two.cl). */
 #define POLAR3(a) v3(number((a)[0]), number((a)[1]), SPACE_NUMBER(number((a)[2])))
 #define AXIAL3(a) v3(SPACE_NUMBER(number((a)[0])), SPACE_NUMBER(number((a)[1])), number((a)[2]))
 #define PRECISE_POLAR3(a) precise3_of(precise_load((a)[0]), precise_load((a)[1]), SPACE_PRECISE(precise_load((a)[2])))
@@ -185,7 +185,7 @@ INLINE real power_of(real x, real y)
     do {                                                                 \
         STORE_PRECISE((field)[3 * (size_t)(i)], (v).x);                  \
         STORE_PRECISE((field)[3 * (size_t)(i) + 1], (v).y);              \
-        STORE_PRECISE((field)[3 * (size_t)(i) + 2], SPACE_PRECISE((v).z)); \
+        STORE_PRECISE((field)[3 * (size_t)(i) + 2], SPACE_PRECISE((v).z));   \
     } while (0)
 #define SET_GRAIN_AXIAL3(field, i, v)                                    \
     do {                                                                 \

@@ -55,6 +55,7 @@ typedef struct clast_launch {
     clast_i32 heat_row;         /* row of the tables of heat for this step */
     clast_i32 bonding;          /* 1 in the step in which contacts bond at a given time */
     clast_i32 mixed;            /* for the host: the numbers are to be passed as pairs of floats */
+    clast_i32 spare;
 } clast_launch;
 
 /* Written by stages that find something; the host reads it once a batch. */

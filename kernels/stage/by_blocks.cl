@@ -60,13 +60,14 @@ INLINE void pair_of_strangers(const clast_launch *launch, const real *owners, co
     PAIR_FROM_CONTACT(PAIR_STORE_STATE);
 }
 
-/* Whether the two of a record may touch: surely so where they do. */
+/* Whether the two of a record may touch: surely so where they do. Two at one place do not (stage/contact.cl); those of padding are one grain. */
 INLINE int pair_is_near(const clast_launch *launch, const real *owners, const real *others, int lane)
 {
     precise3 from = ROW_PRECISE_POLAR3(owners, ROW_POSITION, lane), to = ROW_PRECISE_POLAR3(others, ROW_POSITION, lane);
     vec3 d = apart_vector(periodic_nearest(launch, apart_of(to, from)));
     real sum = rounded(ROW_PRECISE(owners, ROW_RADIUS, lane)) + rounded(ROW_PRECISE(others, ROW_RADIUS, lane));
-    return dot3(d, d) < R(1.00001) * sum * sum;
+    real d2 = dot3(d, d);
+    return d2 > R(0.0) && d2 < R(1.00001) * sum * sum;
 }
 
 /* Grains of a block of records to come. */
@@ -105,9 +106,11 @@ INLINE ulong8 widest(ulong8 x)
 #define LOT_OF_PAIRS     1 /* two of it may touch, or nobody is to look: only then are the rest of its rows filled */
 #define LOT_OF_STRANGERS 2
 #define LOT_QUIET        3 /* strangers still, whose zeros stand there */
+#define LOT_BIT(lot)     (1u << ((lot) % 32)) /* blocks of more lots have none that are quiet */
 INLINE void pair_fill_lots(const clast_launch *launch, int group, int k, real *owners, real *others, int *kind PAIR_DECLARE)
 {
-    int near[CLAST_BLOCK], was_quiet = TOUCHED_QUIET(launch, group), quiet = 0;
+    int near[CLAST_BLOCK];
+    uint was_quiet = TOUCHED_QUIET(launch, group), quiet = 0;
     bool all = PAIRS_ACT_APART || !launch->loose;
     if (!all) {
         VECTOR_LOOP
@@ -118,8 +121,8 @@ INLINE void pair_fill_lots(const clast_launch *launch, int group, int k, real *o
         int some = all;
         for (int lane = LOT * lot; !all && lane < LOT * (lot + 1); lane++)
             some |= near[lane];
-        kind[lot] = some ? LOT_OF_PAIRS : was_quiet >> lot & 1 ? LOT_QUIET : LOT_OF_STRANGERS;
-        quiet |= !some << lot;
+        kind[lot] = some ? LOT_OF_PAIRS : was_quiet & LOT_BIT(lot) ? LOT_QUIET : LOT_OF_STRANGERS;
+        quiet |= some ? 0 : LOT_BIT(lot);
         for (int lane = LOT * lot; some && !all && lane < LOT * (lot + 1); lane++)
             if (near[lane]) {
                 TOUCHED_MARK(owner[k + lane]);
@@ -173,7 +176,7 @@ PAIR_OF_WALL(INLINE, pair_of_plane, PAIR_STORE_STATE)
 /* In a loose bed: the lots in which nobody touches a wall are left alone once their zeros stand there. */
 INLINE void pair_wall_lots(const clast_launch *launch, int group PAIR_DECLARE)
 {
-    int was_quiet = TOUCHED_QUIET(launch, group), quiet = 0;
+    uint was_quiet = TOUCHED_QUIET(launch, group), quiet = 0;
     for (int lot = 0; lot < LOTS; lot++) {
         int first = CLAST_BLOCK * group + LOT * lot, some = 0;
         for (int k = first; k < first + LOT; k++)
@@ -181,9 +184,12 @@ INLINE void pair_wall_lots(const clast_launch *launch, int group PAIR_DECLARE)
                 TOUCHED_MARK(owner[k]);
                 some = 1;
             }
-        for (int k = first; (some || !(was_quiet >> lot & 1)) && k < first + LOT; k++)
-            pair_of_wall(launch, k PAIR_PASS);
-        quiet |= !some << lot;
+        if (some || !(was_quiet & LOT_BIT(lot))) {
+            WALLS_LOOP
+            for (int k = first; k < first + LOT; k++)
+                PAIR_OF_WALLS(launch, k PAIR_PASS);
+        }
+        quiet |= some ? 0 : LOT_BIT(lot);
     }
     TOUCHED_SET_QUIET(group, quiet);
 }
@@ -195,7 +201,7 @@ INLINE void pair_wall_block(const clast_launch *launch, int group PAIR_DECLARE)
         grains_ask_ahead(owner, CLAST_BLOCK * group PAIR_PASS);
         records_ask_ahead(launch, CLAST_BLOCK * group, CLAST_BLOCK * group PAIR_PASS);
     }
-    if (!PAIRS_ACT_APART && launch->loose) {
+    if (TOUCHED_LOOKS(launch)) {
         pair_wall_lots(launch, group PAIR_PASS);
         return;
     }

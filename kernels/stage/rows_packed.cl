@@ -27,7 +27,7 @@ INLINE void grain_ask_for(size_t i PAIR_DECLARE)
     (float16)((a).s2, (b).s2, (a).s3, (b).s3, (a).s6, (b).s6, (a).s7, (b).s7, (a).sa, (b).sa, (a).sb, (b).sb, (a).se, (b).se, (a).sf, (b).sf)
 #define TWOS_LOW(a, b) (float16)((a).s01, (b).s01, (a).s45, (b).s45, (a).s89, (b).s89, (a).scd, (b).scd)
 #define TWOS_HIGH(a, b) (float16)((a).s23, (b).s23, (a).s67, (b).s67, (a).sab, (b).sab, (a).sef, (b).sef)
-/* Four packets: number 4 q + n of each, in quarter q of the nth result. */
+/* Four packets: number 4 q + n of each, in quarter q of the nth result. Four times two halves: the first one's in quarters 0 and 1. */
 #define FOUR_PACKETS(n0, n1, n2, n3, PACKET_OF, at)                                                                \
     float16 n0, n1, n2, n3;                                                                                        \
     do {                                                                                                           \

@@ -27,7 +27,8 @@ typedef enum variant { IN_A_BOX, MOVING_WALL, PERIODIC, SHEARED, EXPANDING, HEAT
     " region: {low_m: [0, 0, 0.0085], high_m: [0.014, 0.014, 0.011]}, velocity_m_s: [-0.3, 0.1, -1.2], temperature_k: 350}\n"
 
 static const char *const scenes[VARIANTS] = {
-    [IN_A_BOX] = COMMON GRAINS "walls: [{name: box, shape: box, low_m: [0, 0, 0.002], high_m: [0.014, 0.014, 0.03], open: [z_high]}]\n",
+    [IN_A_BOX] = COMMON GRAINS "walls: [{name: box, shape: box, low_m: [0, 0, 0.002], high_m: [0.014, 0.014, 0.03], open: [z_high],"
+    " motion: [{type: sinusoid, direction: [0.6, 0, 0.8], amplitude_m: 3.0e-4, frequency_hz: 61}]}]\n",
     [MOVING_WALL] = COMMON GRAINS
     "walls:\n"
     "  - {name: box, shape: box, low_m: [0, 0, -0.01], high_m: [0.014, 0.014, 0.03], open: [z_high, z_low]}\n"
@@ -240,6 +241,13 @@ static void test_bits(void **state)
         compare(v, &reference, (manner){.table = "batch_steps: 1000"}, "batches of 1000");
         compare(v, &reference, (manner){.chunk = 37}, "calls of 37 steps");
         compare(v, &reference, (manner){.shift = 7.3e-4}, "another origin of the grid");
+    }
+    if (v == IN_A_BOX || v == HEATED)
+        compare(v, &reference, (manner){.table = "skin_m: 4.0e-5"}, "a thin skin, with which nobody looks who touches");
+    if (v == IN_A_BOX && case_device()->info.cpu) {
+        case_device()->tuning.block = 512; /* with more lots than a word has bits */
+        compare(v, &reference, (manner){.table = "skin_m: 1.0e-3"}, "a thick skin, work-groups of 512");
+        case_device()->tuning.block = CLAST_BLOCK;
     }
     if (v == MOVING_WALL) {
         if (!again) {

@@ -37,7 +37,7 @@ stages:
   - {name: go, until: {steps: GO}, step_s: 1.0e-5}
   - {name: slide, until: {steps: SLIDE}, step_s: auto, effects_off: [rolling]}
 guards: {every_steps: 5}
-contact_table: {batch_steps: 5, skin_m: 2.0e-5, FORM}
+contact_table: {batch_steps: 5, skin_m: SKIN, FORM}
 output: {fields: [position, velocity, spin, orientation, force, torque], observables: [kinetic_energy, elastic_energy, stress, left_count],
          contacts: true}
 """
@@ -74,10 +74,10 @@ class Oclgrind(unittest.TestCase):
             f.write(text.replace(old, new))
         return os.path.join(folder, "kernels")
 
-    def run_scene(self, *options, form="kernel_form: items", kernels=None, precision="double", steps=(8, 4)):
+    def run_scene(self, *options, form="kernel_form: items", kernels=None, precision="double", steps=(8, 4), skin="2.0e-5"):
         """What oclgrind reports. Its interpreter knows few of LLVM's intrinsics, so the kernels are not optimised."""
         with open(self.path("scene.yaml"), "w") as file:
-            file.write(SCENE.replace("FORM", form).replace("GO", str(steps[0])).replace("SLIDE", str(steps[1])))
+            file.write(SCENE.replace("FORM", form).replace("SKIN", skin).replace("GO", str(steps[0])).replace("SLIDE", str(steps[1])))
         command = ["oclgrind", "--build-options", "-disable-llvm-passes", "--max-errors", "10000", "--log", self.path("log"), *options]
         command += [CLAST, "run", self.path("scene.yaml"), "--out", self.path("result.h5"), "--quiet", "--precision", precision]
         done = subprocess.run(command + (["--kernels", kernels] if kernels else []), capture_output=True, text=True, timeout=300,
@@ -108,8 +108,9 @@ class Oclgrind(unittest.TestCase):
     def test_blocks(self):
         self.check_memory_and_races(form="kernel_form: blocks", kernels=self.without_prefetch())
 
-    def test_blocks_in_mixed_precision(self):
-        self.check_memory_and_races(form="kernel_form: blocks", precision="mixed", kernels=self.without_prefetch())
+    def test_loose_blocks_in_mixed_precision(self):
+        """A skin of more than a quarter of a radius: who touches is looked for and marked."""
+        self.check_memory_and_races(form="kernel_form: blocks", precision="mixed", kernels=self.without_prefetch(), skin="3.0e-4")
 
     def test_phases_in_mixed_precision(self):
         self.check_memory_and_races(form="kernel_form: blocks, step_form: phases, chunk_records: 64", kernels=self.without_prefetch(), precision="mixed")
