@@ -8,6 +8,7 @@
 
 #define CHUNK 256
 #define FINDINGS 4
+#define RECORD_FINDINGS 2
 
 static status id_at(simulation *sim, double index, int32_t *id, failure *why)
 {
@@ -21,24 +22,58 @@ static void stop(simulation *sim, guard_finding *out, int32_t id, const char *wh
              (long long)sim->step, id, what, remedy);
 }
 
-static status check_grains(simulation *sim, guard_finding *out, failure *why)
+/* Chunks of grains, of pairs, and of pairs and walls' records, where contacts are looked at. */
+typedef struct chunks {
+    int64_t grains, pairs, records;
+} chunks;
+
+static int64_t chunks_of(int64_t count)
 {
-    int64_t chunks = (sim->count + CHUNK - 1) / CHUNK;
+    return (count + CHUNK - 1) / CHUNK;
+}
+
+static chunks count_chunks(const simulation *sim)
+{
+    const contact_table *t = &sim->table;
+    chunks c = {chunks_of(sim->count), chunks_of(t->pair_count), chunks_of(t->pair_count) + chunks_of(t->wall_record_count)};
+    c.records = sim->live.law[SLOT_NORMAL] ? c.records : 0;
+    return c;
+}
+
+/* What the device finds in grains, and behind it in records: both at once, since to wait costs more than to look. */
+static status look(simulation *sim, double **found, failure *why)
+{
+    chunks c = count_chunks(sim);
+    int64_t numbers = c.grains * FINDINGS + c.records * RECORD_FINDINGS;
     clast_launch launch = launch_values(sim);
-    cl_kernel kernel = launch_kernel(sim, "guard_particles");
-    bool bounded = sim->scene->domain.given;
+    cl_kernel grains = launch_kernel(sim, "guard_particles"), records = launch_kernel(sim, "guard_records");
+    memcpy(launch.drift, sim->drift_velocity, sizeof launch.drift); /* moves count as they do towards a new table */
+    TRY(observe_partial(sim, numbers, why));
+    TRY(launch_set(grains, "guard_particles", why, "Lmmmi", &launch, store_find(sim, "position")->mem, store_find(sim, "velocity")->mem, sim->partial,
+                   (cl_int)sim->scene->domain.given));
+    TRY(launch_run(sim, grains, "guard_particles", c.grains, 1, why));
+    if (sim->face_count > 0 && sim->live.law[SLOT_NORMAL])
+        TRY(simulation_pose_now(sim, why));
+    if (c.records > 0) {
+        launch = launch_values(sim);
+        TRY(launch_set(records, "guard_records", why, "Lmiiii", &launch, sim->partial, (cl_int)(c.grains * FINDINGS), (cl_int)sim->table.pair_count,
+                       (cl_int)c.pairs, (cl_int)sim->table.wall_record_count));
+        TRY(launch_bind(sim, "guard_records", 6, why));
+        TRY(launch_run(sim, records, "guard_records", c.records, 1, why));
+    }
+    *found = malloc(sizeof **found * (size_t)(numbers + 1));
+    if (!*found)
+        return fail(why, STATUS_ERROR, "out of memory");
+    return store_get(sim, sim->partial, FIELD_EXACT, 0, numbers, *found, why);
+}
+
+/* *rebuilt: grains that have left were deleted, so that records are others. */
+static status check_grains(simulation *sim, const double *found, bool *rebuilt, guard_finding *out, failure *why)
+{
     double bad = -1, left = -1, fastest = -1, speed2 = 0.0;
     char what[256];
-    memcpy(launch.drift, sim->drift_velocity, sizeof launch.drift); /* moves count as they do towards a new table */
-    TRY(observe_partial(sim, chunks * FINDINGS, why));
-    TRY(launch_set(kernel, "guard_particles", why, "Lmmmi", &launch, store_find(sim, "position")->mem, store_find(sim, "velocity")->mem, sim->partial,
-                   (cl_int)bounded));
-    TRY(launch_run(sim, kernel, "guard_particles", chunks, 1, why));
-    double *found = malloc(sizeof *found * (size_t)(chunks * FINDINGS + 1));
-    if (!found)
-        return fail(why, STATUS_ERROR, "out of memory");
-    status result = store_get(sim, sim->partial, FIELD_EXACT, 0, chunks * FINDINGS, found, why);
-    for (int64_t c = 0; c < chunks && result == STATUS_OK; c++) {
+    int32_t id;
+    for (int64_t c = 0; c < count_chunks(sim).grains; c++) {
         const double *f = found + c * FINDINGS;
         bad = bad < 0.0 ? f[0] : bad;
         left = left < 0.0 ? f[2] : left;
@@ -47,15 +82,14 @@ static status check_grains(simulation *sim, guard_finding *out, failure *why)
             fastest = f[1];
         }
     }
-    free(found);
-    TRY(result);
-    int32_t id;
+    *rebuilt = false;
     if (bad >= 0.0) {
         TRY(id_at(sim, bad, &id, why));
         stop(sim, out, id, "position or velocity is not a number", "try a smaller step, and look at the last frames before");
     } else if (left >= 0.0 && sim->scene->domain.delete_leaving) {
         TRY(simulation_pose_now(sim, why));
         TRY(table_build(sim, true, why));
+        *rebuilt = true;
     } else if (left >= 0.0) {
         TRY(id_at(sim, left, &id, why));
         stop(sim, out, id, "it has left the domain", "enlarge the domain, close the walls, or let leavers be deleted (domain: {leaving: delete})");
@@ -102,36 +136,20 @@ static status name_overlap(simulation *sim, int64_t record, double most, guard_f
     return STATUS_OK;
 }
 
-static status check_overlaps(simulation *sim, guard_finding *out, failure *why)
+static status check_overlaps(simulation *sim, const double *found, guard_finding *out, failure *why)
 {
-    contact_table *t = &sim->table;
-    int64_t pairs = (t->pair_count + CHUNK - 1) / CHUNK, chunks = pairs + (t->wall_record_count + CHUNK - 1) / CHUNK;
     double most = 0.0, where = -1.0;
-    if (!sim->live.law[SLOT_NORMAL])
-        return STATUS_OK;
-    if (sim->face_count > 0) {
-        TRY(simulation_pose_now(sim, why));
+    if (sim->face_count > 0 && sim->live.law[SLOT_NORMAL])
         check_periodic_walls(sim, out);
-    }
-    if (out->stop || chunks == 0)
+    if (out->stop)
         return STATUS_OK;
-    clast_launch launch = launch_values(sim);
-    cl_kernel kernel = launch_kernel(sim, "guard_records");
-    TRY(observe_partial(sim, 2 * chunks, why));
-    TRY(launch_set(kernel, "guard_records", why, "Lmiii", &launch, sim->partial, (cl_int)t->pair_count, (cl_int)pairs, (cl_int)t->wall_record_count));
-    TRY(launch_bind(sim, "guard_records", 5, why));
-    TRY(launch_run(sim, kernel, "guard_records", chunks, 1, why));
-    double *found = malloc(sizeof *found * (size_t)(2 * chunks + 1));
-    if (!found)
-        return fail(why, STATUS_ERROR, "out of memory");
-    status result = store_get(sim, sim->partial, FIELD_EXACT, 0, 2 * chunks, found, why);
-    for (int64_t c = 0; c < chunks && result == STATUS_OK; c++)
-        if (found[2 * c] > most) {
-            most = found[2 * c];
-            where = found[2 * c + 1];
+    chunks c = count_chunks(sim);
+    const double *of_records = found + c.grains * FINDINGS;
+    for (int64_t k = 0; k < c.records; k++)
+        if (of_records[RECORD_FINDINGS * k] > most) {
+            most = of_records[RECORD_FINDINGS * k];
+            where = of_records[RECORD_FINDINGS * k + 1];
         }
-    free(found);
-    TRY(result);
     return most > sim->scene->guards.overlap_max ? name_overlap(sim, (int64_t)where, most, out, why) : STATUS_OK;
 }
 
@@ -155,14 +173,26 @@ static status check_temperatures(simulation *sim, guard_finding *out, failure *w
 
 status guard_check(simulation *sim, guard_finding *out, failure *why)
 {
+    double *found = NULL;
+    bool rebuilt = false;
     out->stop = false;
     servo_guard(sim, out);
     if (out->stop)
         return STATUS_OK;
-    TRY(check_grains(sim, out, why));
-    if (!out->stop)
-        TRY(check_temperatures(sim, out, why));
-    return out->stop ? STATUS_OK : check_overlaps(sim, out, why);
+    status result = look(sim, &found, why);
+    if (result == STATUS_OK)
+        result = check_grains(sim, found, &rebuilt, out, why);
+    if (result == STATUS_OK && rebuilt) {
+        free(found);
+        found = NULL;
+        result = look(sim, &found, why);
+    }
+    if (result == STATUS_OK && !out->stop)
+        result = check_temperatures(sim, out, why);
+    if (result == STATUS_OK && !out->stop)
+        result = check_overlaps(sim, found, out, why);
+    free(found);
+    return result;
 }
 
 /* The free grain that is deepest in a wall, in shares of its radius. */

@@ -423,8 +423,9 @@ BODY void guard_records_unit(int chunk, const clast_launch *launch, __global exa
     partial[2 * chunk + 1] = precise_store(precise_from_int(where));
 }
 
-__kernel void guard_records(const clast_launch launch, __global exact *restrict partial, const int pair_count, const int pair_chunks,
+/* Behind the numbers of the grains, of which there are `from`. */
+__kernel void guard_records(const clast_launch launch, __global exact *restrict partial, const int from, const int pair_count, const int pair_chunks,
                             const int wall_count PAIR_DECLARE)
 {
-    guard_records_unit(get_global_id(0), &launch, partial, pair_count, pair_chunks, wall_count PAIR_PASS);
+    guard_records_unit(get_global_id(0), &launch, partial + from, pair_count, pair_chunks, wall_count PAIR_PASS);
 }
