@@ -1,5 +1,6 @@
 """Runs that go on from a checkpoint: bit for bit what the uninterrupted run gives; signals, kills and damaged checkpoints."""
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -64,6 +65,11 @@ def clast(*arguments):
     return subprocess.run([CLAST, *arguments], capture_output=True, text=True, timeout=300)
 
 
+def tables_told(done):
+    """Contact tables, by the last line of a run."""
+    return int(re.search(r"(\d+) tables,", done.stderr).group(1))
+
+
 def frames(path):
     """Times, and of every frame the bits of its fields."""
     with h5py.File(path, "r") as file:
@@ -97,7 +103,7 @@ class Case(unittest.TestCase):
         return done
 
     def run_scene(self, text, result):
-        self.succeed("run", self.write(text), "--out", self.path(result))
+        self.tables = tables_told(self.succeed("run", self.write(text), "--out", self.path(result)))
         return self.path(result)
 
 
@@ -109,13 +115,16 @@ class Resume(Case):
         with h5py.File(checkpoint, "r") as file:
             history = file["contacts/history"][...]
             at = file["run/time"][...].item()
+            tables = file["run/rebuilds"][...].item()
         if in_slip:
             self.assertGreater(numpy.count_nonzero(numpy.any(history != 0, axis=1)), 5)
         times, bits = frames(whole)
         seen = observables(whole)
         self.assertGreater(at, 0)
         self.assertLess(at, times[-1])
-        self.succeed("resume", checkpoint, "--out", self.path("new.h5"))
+        resumed = self.succeed("resume", checkpoint, "--out", self.path("new.h5"))
+        self.assertGreater(tables, 1)
+        self.assertLessEqual(tables_told(resumed), self.tables - tables + 1, "tables of the resumed run alone")
         new_times, new_bits = frames(self.path("new.h5"))
         self.assertEqual(new_times[-1], times[-1])
         self.assertTrue(new_bits[-1] == bits[-1], "the last frames differ")
