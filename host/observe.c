@@ -172,42 +172,58 @@ static status read_ints(simulation *sim, cl_mem mem, int64_t count, int32_t **ou
 }
 
 /* The records in the order of their owners' permanent ids, and of a grain as its partners' ids have it, walls last: sums in this order do not
- * depend on when the table was built. Where the grains stand, records are packed in the order of their owners and then of ids. */
+ * depend on when the table was built, as the order does in which records stand. */
 typedef struct record_order {
     int32_t *record;
     int64_t count;
 } record_order;
 
-static void sort_records(const simulation *sim, const int32_t *owner, const int32_t *id, int64_t *start, record_order *out)
+/* Records by the permanent id of one of their grains; those of the same one stay in their order. `start`: room for a number more than there are ids. */
+static void sort_records(const int32_t *from, int64_t count, const int32_t *grain, const int32_t *id, int64_t ids, int64_t *start, int32_t *to)
+{
+    memset(start, 0, sizeof *start * (size_t)(ids + 1));
+    for (int64_t n = 0; n < count; n++)
+        start[id[grain[from[n]]] + 1]++;
+    for (int64_t i = 0; i < ids; i++)
+        start[i + 1] += start[i];
+    for (int64_t n = 0; n < count; n++)
+        to[start[id[grain[from[n]]]]++] = from[n];
+}
+
+static void order_found(const simulation *sim, const int32_t *owner, const int32_t *other, const int32_t *id, int64_t *start, int32_t *room,
+                        record_order *out)
 {
     const contact_table *t = &sim->table;
-    const int64_t first[2] = {0, t->wall_base}, end[2] = {t->pair_count, records_end(sim)};
-    for (int part = 0; part < 2; part++)
-        for (int64_t k = first[part]; k < end[part]; k++)
-            start[id[owner[k]] + 1]++;
-    for (int64_t i = 0; i < sim->id_count; i++)
-        start[i + 1] += start[i];
-    for (int part = 0; part < 2; part++)
-        for (int64_t k = first[part]; k < end[part]; k++)
-            out->record[start[id[owner[k]]]++] = (int32_t)k;
-    out->count = t->pair_count + end[1] - first[1];
+    for (int64_t k = 0; k < t->pair_count; k++)
+        room[k] = (int32_t)k;
+    sort_records(room, t->pair_count, other, id, sim->id_count, start, out->record);
+    out->count = t->pair_count;
+    for (int64_t k = t->wall_base; k < records_end(sim); k++)
+        out->record[out->count++] = (int32_t)k;
+    memcpy(room, out->record, sizeof *room * (size_t)out->count);
+    sort_records(room, out->count, owner, id, sim->id_count, start, out->record);
 }
 
 static status order_records(simulation *sim, record_order *out, failure *why)
 {
     const contact_table *t = &sim->table;
-    int32_t *owner = NULL, *id = NULL;
-    int64_t *start = calloc((size_t)sim->id_count + 2, sizeof *start);
-    *out = (record_order){.record = malloc(sizeof *out->record * (size_t)(t->record_count + 1))};
-    status result = start && out->record ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
+    size_t records = sizeof *out->record * (size_t)(t->record_count + 1);
+    int32_t *owner = NULL, *other = NULL, *id = NULL, *room = malloc(records);
+    int64_t *start = malloc(sizeof *start * ((size_t)sim->id_count + 1));
+    *out = (record_order){.record = malloc(records)};
+    status result = start && room && out->record ? STATUS_OK : fail(why, STATUS_ERROR, "out of memory");
     if (result == STATUS_OK)
         result = read_ints(sim, t->owner[t->now], t->record_count, &owner, why);
     if (result == STATUS_OK)
+        result = read_ints(sim, t->other[t->now], t->record_count, &other, why);
+    if (result == STATUS_OK)
         result = read_ints(sim, store_find(sim, "id")->mem, sim->stride, &id, why);
     if (result == STATUS_OK)
-        sort_records(sim, owner, id, start, out);
+        order_found(sim, owner, other, id, start, room, out);
     free(owner);
+    free(other);
     free(id);
+    free(room);
     free(start);
     return result;
 }

@@ -1,6 +1,8 @@
 /* Builds the contact table: sorts the grains by cell, finds the pairs, gives every grain its slots, and carries histories over.
- * The smaller grain owns a pair (ties: the smaller permanent id), so a grain looks for partners in its own level of the grid and in
- * coarser ones only. Slots are sorted by the partner's permanent id, walls last, so that sums do not depend on the order in memory. */
+ * A grain looks for partners in the cells behind it, and in those around it of coarser levels of the grid; pairs stand in the order of the grains that find
+ * them, so that all pairs of a grain stand near it, and none behind those that it finds itself but at a periodic border (docs/performance.md). The
+ * smaller grain owns a pair (ties: the smaller permanent id), and slots are sorted by the partner's permanent id, walls last: neither who a record
+ * names first nor any sum depends on the order in memory. */
 
 /* What is counted by several at a time, or by one alone: an atomic operation takes some ten times as long. The value before. */
 INLINE uint table_add(bool shared, __global uint *count, uint more)
@@ -198,123 +200,131 @@ INLINE int table_beside(int c, int cells)
             }                                                                                                               \
     }
 
+/* For the grains that i finds, and perhaps some that are not near: of two grains of a level the first comes upon the second, so that a pair is seen once. */
+#define TABLE_BEHIND(TAKE)                                                                                                            \
+    {                                                                                                                                 \
+        int own_level = table_level(grid, rounded(g.radius));                                                                         \
+        for (int l = own_level; l >= 0; l--) {                                                                                        \
+            __global const clast_level *v = grid->level + l;                                                                          \
+            table_spot spot = table_spot_of(grid, l, rounded3(g.place));                                                              \
+            int n0 = v->cells[0], n1 = v->cells[1], n2 = v->cells[2];                                                                 \
+            bool within = l == own_level, few = min(n0, n1) < 3 || n2 == 2; /* few: cells before it are cells behind it too */        \
+            if (!within || few)                                                                                                       \
+                TABLE_AROUND(v, spot, if (!within || (int)(j) > i) TAKE)                                                              \
+            else {                                                                                                                    \
+                int y = table_beside(spot.y + 1, n1), z = table_beside(spot.z + 1, n2), row = v->first_cell + (spot.z * n1 + spot.y) * n0; \
+                uint last = cell_start[row + min(spot.x + 2, n0)]; /* the rest of its own cell, and the next */                       \
+                for (uint j = i + 1; j < last; j++) {                                                                                 \
+                    TAKE(j)                                                                                                           \
+                }                                                                                                                     \
+                if (spot.x == n0 - 1)                                                                                                 \
+                    TABLE_ROW(row, 0, 1, n0, TAKE)                                                                                    \
+                TABLE_ROW(v->first_cell + (spot.z * n1 + y) * n0, spot.x - 1, 3, n0, TAKE)                                            \
+                for (int side = n2 > 1 ? -1 : 2; side <= 1; side++) /* of a bed of one layer of cells there is no other */            \
+                    TABLE_ROW(v->first_cell + (z * n1 + table_beside(spot.y + side, n1)) * n0, spot.x - 1, 3, n0, TAKE)               \
+            }                                                                                                                         \
+        }                                                                                                                             \
+    }
+
 /* Grains within reach of one, before they are counted. Whether the next one is near cannot be foretold: it is put down in any case, and stays if it is. */
 #define TABLE_NEAR_ROOM 32
 
-/* Counts the pairs of i with those that are `near`, and keeps each with its owner where there is room. */
-OUTLINE void table_count_near(int i, bool shared, const table_grain *g, const int *near, int count, __global const exact *restrict radius, __global const int *restrict id,
-                             __global uint *restrict own_count, __global uint *restrict slot_count, __global int *restrict kept, int room)
+/* Takes note of grains that are `near`: of their slots, and where there is room of themselves. How many of i's there are then. */
+OUTLINE int table_count_near(int i, bool shared, const int *near, int count, int before, __global uint *restrict slot_count, __global int *restrict kept,
+                             int room)
 {
     for (int n = 0; n < count; n++) {
-        int j = near[n];
-        bool mine = table_owns(g, j, radius, id);
-        int owner = mine ? i : j;
-        uint row = table_add(shared, &own_count[owner], 1);
-        if (row < (uint)room)
-            kept[(size_t)owner * room + row] = mine ? j : i;
-        table_add(shared, &slot_count[j], 1);
+        if (before + n < room)
+            kept[(size_t)i * room + before + n] = near[n];
+        table_add(shared, &slot_count[near[n]], 1);
     }
-    table_add(shared, &slot_count[i], (uint)count);
+    return before + count;
 }
 
-/* Pairs owned by each grain, and slots each grain needs; both counts must be zero before. The first `room` partners of each grain are `kept`,
- * in any order, so that most grains need not be searched for twice. Of two grains of a level the first comes upon the second: a pair is seen once. */
+/* Pairs that each grain finds, and slots each grain needs, whose counts must be zero before. The first `room` partners of each grain are `kept`,
+ * in any order, so that most grains need not be searched for twice. */
 INLINE void table_count_unit(int i, bool shared, const clast_launch *launch, __global const clast_grid *restrict grid,
                            __global const uint *restrict cell_start, __global const exact *restrict position,
-                           __global const exact *restrict radius, __global const int *restrict id, __global uint *restrict own_count,
+                           __global const exact *restrict radius, __global const int *restrict id, __global uint *restrict found_count,
                            __global uint *restrict slot_count, __global int *restrict kept, const int room)
 {
     if (i >= launch->particle_count)
         return;
     table_grain g = table_grain_of(i, position, radius, id);
     real skin = number(grid->skin);
-    int near[TABLE_NEAR_ROOM], count = 0;
-#define TABLE_MEET(j)                                                                        \
-    near[count] = (int)(j);                                                                  \
-    count += table_near(launch, skin, &g, j, position, radius) ? 1 : 0;                      \
-    if (count == TABLE_NEAR_ROOM) {                                                          \
-        table_count_near(i, shared, &g, near, count, radius, id, own_count, slot_count, kept, room); \
-        count = 0;                                                                           \
+    int near[TABLE_NEAR_ROOM], count = 0, before = 0;
+#define TABLE_MEET(j)                                                                           \
+    {                                                                                           \
+        near[count] = (int)(j);                                                                 \
+        count += table_near(launch, skin, &g, j, position, radius) ? 1 : 0;                     \
+        if (count == TABLE_NEAR_ROOM) {                                                         \
+            before = table_count_near(i, shared, near, count, before, slot_count, kept, room);  \
+            count = 0;                                                                          \
+        }                                                                                       \
     }
-#define TABLE_MEET_LATER(j) \
-    if ((int)(j) > i) {     \
-        TABLE_MEET(j)       \
-    }
-    int own_level = table_level(grid, rounded(g.radius));
-    for (int l = own_level; l >= 0; l--) {
-        __global const clast_level *v = grid->level + l;
-        table_spot spot = table_spot_of(grid, l, rounded3(g.place));
-        int n0 = v->cells[0], n1 = v->cells[1], n2 = v->cells[2];
-        if (l < own_level)
-            TABLE_AROUND(v, spot, TABLE_MEET)
-        else if (min(n0, n1) < 3 || n2 == 2) /* cells before it are cells behind it too */
-            TABLE_AROUND(v, spot, TABLE_MEET_LATER)
-        else {
-            int y = table_beside(spot.y + 1, n1), z = table_beside(spot.z + 1, n2), row = v->first_cell + (spot.z * n1 + spot.y) * n0;
-            uint last = cell_start[row + min(spot.x + 2, n0)]; /* the rest of its own cell, and the next */
-            for (uint j = i + 1; j < last; j++) {
-                TABLE_MEET(j)
-            }
-            if (spot.x == n0 - 1)
-                TABLE_ROW(row, 0, 1, n0, TABLE_MEET)
-            TABLE_ROW(v->first_cell + (spot.z * n1 + y) * n0, spot.x - 1, 3, n0, TABLE_MEET)
-            for (int side = n2 > 1 ? -1 : 2; side <= 1; side++) /* of a bed of one layer of cells there is no other */
-                TABLE_ROW(v->first_cell + (z * n1 + table_beside(spot.y + side, n1)) * n0, spot.x - 1, 3, n0, TABLE_MEET)
-        }
-    }
-    table_count_near(i, shared, &g, near, count, radius, id, own_count, slot_count, kept, room);
+    TABLE_BEHIND(TABLE_MEET)
+    before = table_count_near(i, shared, near, count, before, slot_count, kept, room);
+    found_count[i] = (uint)before;
+    table_add(shared, &slot_count[i], (uint)before);
 }
 
 __kernel void table_count(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
                           __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id,
-                          __global uint *restrict own_count, __global uint *restrict slot_count, __global int *restrict kept,
+                          __global uint *restrict found_count, __global uint *restrict slot_count, __global int *restrict kept,
                           const int room)
 {
-    table_count_unit(get_global_id(0), true, &launch, grid, cell_start, position, radius, id, own_count, slot_count, kept, room);
+    table_count_unit(get_global_id(0), true, &launch, grid, cell_start, position, radius, id, found_count, slot_count, kept, room);
 }
 
-/* Writes the pairs of each grain, sorted by the partner's permanent id. */
+/* The partner of i in a record that it is one of. */
+INLINE int table_partner_of(int i, uint k, __global const int *restrict owner, __global const int *restrict other)
+{
+    return owner[k] == i ? other[k] : owner[k];
+}
+
+/* Puts the pair of i and j among those that i has found, first..end, by the partner's permanent id. */
+INLINE void table_insert(int i, int j, bool owns, uint first, uint end, __global const int *restrict id, __global int *restrict owner,
+                         __global int *restrict other)
+{
+    for (; end > first && id[table_partner_of(i, end - 1, owner, other)] > id[j]; end--) {
+        owner[end] = owner[end - 1];
+        other[end] = other[end - 1];
+    }
+    owner[end] = owns ? i : j;
+    other[end] = owns ? j : i;
+}
+
+/* Writes the pairs that each grain finds, sorted by the partner's permanent id. */
 INLINE void table_fill_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
                           __global const uint *restrict cell_start, __global const exact *restrict position,
-                          __global const exact *restrict radius, __global const int *restrict id, __global const uint *restrict own_start,
+                          __global const exact *restrict radius, __global const int *restrict id, __global const uint *restrict found_start,
                           __global int *restrict owner, __global int *restrict other, __global const int *restrict kept, const int room)
 {
     if (i >= launch->particle_count)
         return;
     table_grain g = table_grain_of(i, position, radius, id);
     real skin = number(grid->skin);
-    uint first = own_start[i], k = first;
-#define TABLE_WRITE(j)                                              \
-    uint at = k++;                                                  \
-    for (; at > first && id[other[at - 1]] > id[j]; at--)           \
-        other[at] = other[at - 1];                                  \
-    other[at] = j
-#define TABLE_WRITE_OWNED(j)                                                                                   \
-    if ((int)(j) != i && table_owns(&g, j, radius, id) && table_near(launch, skin, &g, j, position, radius)) { \
-        TABLE_WRITE(j);                                                                                        \
+    uint first = found_start[i], k = first;
+    int count = (int)(found_start[i + 1] - first);
+#define TABLE_WRITE(j) table_insert(i, j, table_owns(&g, j, radius, id), first, k++, id, owner, other)
+#define TABLE_WRITE_NEAR(j)                                       \
+    {                                                             \
+        if (table_near(launch, skin, &g, j, position, radius))    \
+            TABLE_WRITE(j);                                       \
     }
-    int count = (int)(own_start[i + 1] - first);
     if (count <= room) {
-        for (int m = 0; m < count; m++) {
-            int j = kept[(size_t)i * room + m];
-            TABLE_WRITE(j);
-        }
-    } else {
-        for (int l = table_level(grid, rounded(g.radius)); l >= 0; l--) {
-            table_spot spot = table_spot_of(grid, l, rounded3(g.place));
-            TABLE_AROUND(grid->level + l, spot, TABLE_WRITE_OWNED)
-        }
-    }
-    for (uint a = first; a < k; a++)
-        owner[a] = i;
+        for (int m = 0; m < count; m++)
+            TABLE_WRITE(kept[(size_t)i * room + m]);
+    } else
+        TABLE_BEHIND(TABLE_WRITE_NEAR)
 }
 
 __kernel void table_fill(const clast_launch launch, __global const clast_grid *restrict grid, __global const uint *restrict cell_start,
                          __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id,
-                         __global const uint *restrict own_start, __global int *restrict owner, __global int *restrict other,
+                         __global const uint *restrict found_start, __global int *restrict owner, __global int *restrict other,
                          __global const int *restrict kept, const int room)
 {
-    table_fill_unit(get_global_id(0), &launch, grid, cell_start, position, radius, id, own_start, owner, other, kept, room);
+    table_fill_unit(get_global_id(0), &launch, grid, cell_start, position, radius, id, found_start, owner, other, kept, room);
 }
 
 /* Records that fill up a work-group, behind the pairs and behind the walls, name grain 0 twice. */
@@ -549,16 +559,16 @@ __kernel void table_where(const clast_launch launch, __global const int *restric
 }
 
 /* What the host waits for of a table: pairs, records of walls and slots, side by side. */
-INLINE void table_totals_unit(__global const uint *restrict own_start, __global const uint *restrict wall_start, __global const uint *restrict slot_offset,
+INLINE void table_totals_unit(__global const uint *restrict found_start, __global const uint *restrict wall_start, __global const uint *restrict slot_offset,
                               __global uint *restrict totals, const int grains, const int blocks)
 {
-    totals[0] = own_start[grains];
+    totals[0] = found_start[grains];
     totals[1] = wall_start[grains];
     totals[2] = slot_offset[blocks];
 }
 
-__kernel void table_totals(__global const uint *restrict own_start, __global const uint *restrict wall_start, __global const uint *restrict slot_offset,
+__kernel void table_totals(__global const uint *restrict found_start, __global const uint *restrict wall_start, __global const uint *restrict slot_offset,
                            __global uint *restrict totals, const int grains, const int blocks)
 {
-    table_totals_unit(own_start, wall_start, slot_offset, totals, grains, blocks);
+    table_totals_unit(found_start, wall_start, slot_offset, totals, grains, blocks);
 }

@@ -48,26 +48,26 @@ __kernel void table_bond_inverse(const clast_launch launch, __global const int *
         }                                                                                                                     \
     }
 
-/* Adds them to what each grain owns and to its slots, and to the partners that are `kept` where there is room. */
+/* Adds them to what each grain finds and to its slots, and to the partners that are `kept` where there is room. */
 INLINE void table_bond_count_unit(int i, const clast_launch *launch, __global const clast_grid *restrict grid,
                                   __global const exact *restrict position, __global const exact *restrict radius, __global const int *restrict id,
                                   __global const int *restrict order, __global const int *restrict inverse, __global const int *restrict old_owner,
                                   __global const int *restrict old_other, __global const uint *restrict old_slot_offset,
-                                  __global const int *restrict old_slots, __global const real *restrict bonded, __global uint *restrict own_count,
+                                  __global const int *restrict old_slots, __global const real *restrict bonded, __global uint *restrict found_count,
                                   __global uint *restrict slot_count, __global int *restrict kept, const int room, const int old_wall_base)
 {
     if (i >= launch->particle_count)
         return;
     table_grain g = table_grain_of(i, position, radius, id);
     real skin = number(grid->skin);
-    uint found = own_count[i], before = found;
+    uint found = found_count[i], before = found;
 #define TABLE_COUNT_BONDED(j)                                   \
     if (found < (uint)room)                                     \
         kept[(size_t)i * room + found] = j;                     \
     found++;                                                    \
     atomic_inc((volatile __global uint *)&slot_count[j])
     TABLE_FOR_BONDED(TABLE_COUNT_BONDED)
-    own_count[i] = found;
+    found_count[i] = found;
     atomic_add((volatile __global uint *)&slot_count[i], found - before);
 }
 
@@ -75,11 +75,11 @@ __kernel void table_bond_count(const clast_launch launch, __global const clast_g
                                __global const exact *restrict radius, __global const int *restrict id, __global const int *restrict order,
                                __global const int *restrict inverse, __global const int *restrict old_owner, __global const int *restrict old_other,
                                __global const uint *restrict old_slot_offset, __global const int *restrict old_slots,
-                               __global const real *restrict bonded, __global uint *restrict own_count, __global uint *restrict slot_count,
+                               __global const real *restrict bonded, __global uint *restrict found_count, __global uint *restrict slot_count,
                                __global int *restrict kept, const int room, const int old_wall_base)
 {
     table_bond_count_unit(get_global_id(0), &launch, grid, position, radius, id, order, inverse, old_owner, old_other, old_slot_offset, old_slots,
-                          bonded, own_count, slot_count, kept, room, old_wall_base);
+                          bonded, found_count, slot_count, kept, room, old_wall_base);
 }
 
 /* Grains whose partners were not all kept have been searched for again: theirs are put where they belong among what was found. */
@@ -88,10 +88,10 @@ INLINE void table_bond_fill_unit(int i, const clast_launch *launch, __global con
                                  __global const int *restrict order, __global const int *restrict inverse, __global const int *restrict old_owner,
                                  __global const int *restrict old_other, __global const uint *restrict old_slot_offset,
                                  __global const int *restrict old_slots, __global const real *restrict bonded,
-                                 __global const uint *restrict own_start, __global int *restrict owner, __global int *restrict other,
+                                 __global const uint *restrict found_start, __global int *restrict owner, __global int *restrict other,
                                  const int room, const int old_wall_base)
 {
-    if (i >= launch->particle_count || (int)(own_start[i + 1] - own_start[i]) <= room)
+    if (i >= launch->particle_count || (int)(found_start[i + 1] - found_start[i]) <= room)
         return;
     table_grain g = table_grain_of(i, position, radius, id);
     real skin = number(grid->skin);
@@ -100,13 +100,8 @@ INLINE void table_bond_fill_unit(int i, const clast_launch *launch, __global con
     {
         TABLE_FOR_BONDED(TABLE_TALLY_BONDED)
     }
-    uint first = own_start[i], k = own_start[i + 1] - extra;
-#define TABLE_WRITE_BONDED(j)                                       \
-    uint at = k++;                                                  \
-    owner[at] = i;                                                  \
-    for (; at > first && id[other[at - 1]] > id[j]; at--)           \
-        other[at] = other[at - 1];                                  \
-    other[at] = j
+    uint first = found_start[i], k = found_start[i + 1] - extra;
+#define TABLE_WRITE_BONDED(j) table_insert(i, j, true, first, k++, id, owner, other)
     {
         TABLE_FOR_BONDED(TABLE_WRITE_BONDED)
     }
@@ -116,11 +111,11 @@ __kernel void table_bond_fill(const clast_launch launch, __global const clast_gr
                               __global const exact *restrict radius, __global const int *restrict id, __global const int *restrict order,
                               __global const int *restrict inverse, __global const int *restrict old_owner, __global const int *restrict old_other,
                               __global const uint *restrict old_slot_offset, __global const int *restrict old_slots,
-                              __global const real *restrict bonded, __global const uint *restrict own_start, __global int *restrict owner,
+                              __global const real *restrict bonded, __global const uint *restrict found_start, __global int *restrict owner,
                               __global int *restrict other, const int room, const int old_wall_base)
 {
     table_bond_fill_unit(get_global_id(0), &launch, grid, position, radius, id, order, inverse, old_owner, old_other, old_slot_offset, old_slots,
-                         bonded, own_start, owner, other, room, old_wall_base);
+                         bonded, found_start, owner, other, room, old_wall_base);
 }
 
 #define TABLE_BOND_PHASES                                                                                                                        \

@@ -193,20 +193,27 @@ static inline void check_set(simulation *sim, const table_copy *h)
 
 /* ---- how it must stand there ---- */
 
-/* Packed by owner, each owner's partners by id; work-groups filled up with rows that name grain 0 twice. */
+/* Whether a record may stand behind that of `finder` and its partner `last`, as found by one of its grains; that one into *finder. */
+static inline bool stands_behind(const table_copy *h, int64_t k, int64_t *finder, int64_t *last)
+{
+    int32_t low = h->owner[k] < h->other[k] ? h->owner[k] : h->other[k], high = h->owner[k] + h->other[k] - low;
+    bool found = low > *finder || (low == *finder && h->id[high] > *last), wraps = !found && (high > *finder || (high == *finder && h->id[low] > *last));
+    *finder = found ? low : high;
+    *last = h->id[found ? high : low];
+    return found || wraps;
+}
+
+/* Pairs in the order of the grains that find them, and each one's by the partner's id; those of walls by grain and face; work-groups filled up with rows
+ * that name grain 0 twice. */
 static inline void check_records(const table_copy *h)
 {
     assert_int_equal(h->wall_base % CLAST_BLOCK, 0);
     assert_int_equal(h->records % CLAST_BLOCK, 0);
     assert_true(h->wall_base - h->pairs < CLAST_BLOCK && h->records - h->end < CLAST_BLOCK);
-    for (int64_t k = 1; k < h->end; k++) {
-        if (k >= h->pairs && k <= h->wall_base)
-            continue;
-        assert_true(h->owner[k] >= h->owner[k - 1]);
-        if (h->owner[k] != h->owner[k - 1])
-            continue;
-        assert_true(k < h->pairs ? h->id[h->other[k]] > h->id[h->other[k - 1]] : h->other[k] > h->other[k - 1]);
-    }
+    for (int64_t k = 0, finder = -1, last = -1; k < h->pairs; k++)
+        assert_true(stands_behind(h, k, &finder, &last));
+    for (int64_t k = h->wall_base + 1; k < h->end; k++)
+        assert_true(h->owner[k] > h->owner[k - 1] || (h->owner[k] == h->owner[k - 1] && h->other[k] > h->other[k - 1]));
     for (int64_t k = h->pairs; k < h->records; k++)
         if (k < h->wall_base || k >= h->end)
             assert_true(h->owner[k] == 0 && h->other[k] == 0);

@@ -13,6 +13,24 @@ static void test_random(void **state)
     check_bed(yaml, random_bed(400, 5e-5, 0.5, 4), 500);    /* more sizes than levels */
 }
 
+/* Of grains of one level, away from borders, the first finds the pair: nothing stands behind what a grain finds itself that the grain waits for. */
+static void test_first_finds(void **state)
+{
+    (void)state;
+    sim_case c;
+    case_open_bed(&c, MATERIAL NORMAL SKIN("0.004"), random_bed(1500, 0.03, 0.05, 6));
+    table_copy h = copy_table(c.sim);
+    int64_t finder = 0;
+    assert_true(h.pairs > 1500);
+    for (int64_t k = 0; k < h.pairs; k++) {
+        int64_t low = h.owner[k] < h.other[k] ? h.owner[k] : h.other[k];
+        assert_true(low >= finder);
+        finder = low;
+    }
+    free_copy(&h);
+    case_close(&c);
+}
+
 /* A boulder in sand: its block alone is wide. */
 static void test_boulder(void **state)
 {
@@ -253,6 +271,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random),
+        cmocka_unit_test(test_first_finds),
         cmocka_unit_test(test_boulder),
         cmocka_unit_test(test_periodic),
         cmocka_unit_test(test_periodic_edges),
