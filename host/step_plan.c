@@ -13,13 +13,14 @@
 
 #include <limits.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Beds with fewer chunks than this go through the stages whole. */
 #define CHUNKS_LEAST 4
 /* Records of a chunk for each block in a group: 16 blocks go together in the usual chunk, so that ragged borders make no small launches. */
 #define CHUNK_PER_BLOCK 2048
 /* A chunk of a stream in chunks that are launched. */
-#define STREAM_CHUNK_SHARE 8
+#define STREAM_CHUNK_SHARE 32
 /* Steps between tables, times records, from which streams take off more than they cost (docs/performance.md). */
 #define STREAMS_PAY 3e5
 
@@ -160,22 +161,25 @@ static status find_releases(simulation *sim, planning *p, failure *why)
 }
 
 /* Every chunk takes the lowest place of its stream that no earlier chunk of it needs any more. */
-static void choose_places(planning *p)
+static status choose_places(planning *p, failure *why)
 {
+    int32_t *until = malloc(sizeof *until * (size_t)p->chunks); /* of every place: the chunk after which it is free */
+    if (!until)
+        return fail(why, STATUS_ERROR, "out of memory");
     p->places = 0;
     for (int stream = 0; stream < p->streams; stream++) {
-        int begin = stream_begin(p, stream), base = p->places;
-        for (int c = begin; c < stream_begin(p, stream + 1); c++) {
+        int base = p->places;
+        for (int c = stream_begin(p, stream); c < stream_begin(p, stream + 1); c++) {
             int place = base;
-            for (int e = begin; e < c; e++)
-                if (p->release[e] >= c && p->place[e] == place) {
-                    place++;
-                    e = begin - 1;
-                }
+            while (place < p->places && until[place] >= c)
+                place++;
+            until[place] = p->release[c];
             p->place[c] = place;
             p->places = place + 1 > p->places ? place + 1 : p->places;
         }
     }
+    free(until);
+    return STATUS_OK;
 }
 
 /* ---- the plan ---- */
@@ -221,7 +225,7 @@ static bool may_share_places(const simulation *sim)
     for (slot_id slot = 0; slot < SLOT_COUNT; slot++)
         for (int f = 0; sim->live.law[slot] && f < LAW_ARGUMENTS_MAX; f++) {
             const field *field = sim->live.law[slot]->particle_fields[f];
-            if (field && field->extent == PER_RECORD && field != &field_torque && field != &field_heat)
+            if (field && field->extent == PER_RECORD && strcmp(field->name, field_torque.name) != 0 && field != &field_heat)
                 return false;
         }
     return true;
@@ -250,7 +254,7 @@ static status plan_chunks(simulation *sim, planning *p, failure *why)
     wait_in_groups(p);
     if (may_share) {
         TRY(find_releases(sim, p, why));
-        choose_places(p);
+        TRY(choose_places(p, why));
     }
     int room = p->places * p->chunk, wall_base = sim->table.wall_base;
     bool pays = may_share && 2 * (int64_t)room <= wall_base;
@@ -282,14 +286,9 @@ static void choose_chunks(const simulation *sim, planning *p)
     p->streams = members < p->chunks ? members : p->chunks;
 }
 
-status step_plan_make(simulation *sim, failure *why)
+static status plan_streams(simulation *sim, planning *of, failure *why)
 {
-    planning p = {.blocks = blocks_of(sim)};
-    sim->plan.count = 0;
-    sim->plan.phases.count = 0;
-    choose_chunks(sim, &p);
-    if (p.chunk == 0)
-        return plan_whole(sim, why);
+    planning p = *of;
     p.together = p.chunk / CHUNK_PER_BLOCK > 1 && p.streams == 1 ? p.chunk / CHUNK_PER_BLOCK : 1;
     p.groups = (p.blocks + p.together - 1) / p.together;
     p.first = calloc(2 * (size_t)p.blocks + 1, sizeof *p.first);
@@ -302,6 +301,29 @@ status step_plan_make(simulation *sim, failure *why)
     free(p.release);
     free(p.place);
     return result;
+}
+
+/* What records give their grains, where it stands side by side, is found by 32 bits (kernels/stage/wrenches_together.cl). */
+static status check_places(simulation *sim, failure *why)
+{
+    const contact_table *t = &sim->table;
+    const stored_field *torque = store_find(sim, field_torque.name);
+    int64_t places = sim->plan.force_records > 0 ? sim->plan.force_records + t->record_count - t->wall_base : t->record_count;
+    if (!torque || torque->field->components == field_torque.components || places < UINT32_MAX / torque->field->components)
+        return STATUS_OK;
+    return fail(why, STATUS_ERROR,
+                "%lld places of forces are more than steps by blocks can tell apart in mixed precision (%lld); take `precision: double` or `contact_table: {kernel_form: items}`",
+                (long long)places, (long long)(UINT32_MAX / torque->field->components));
+}
+
+status step_plan_make(simulation *sim, failure *why)
+{
+    planning p = {.blocks = blocks_of(sim)};
+    sim->plan.count = 0;
+    sim->plan.phases.count = 0;
+    choose_chunks(sim, &p);
+    TRY(p.chunk == 0 ? plan_whole(sim, why) : plan_streams(sim, &p, why));
+    return check_places(sim, why);
 }
 
 void step_plan_free(step_plan *plan)
