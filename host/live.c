@@ -193,8 +193,18 @@ static bool acts_apart(const live_laws *live)
     return live->law[SLOT_BOND] || live->law[SLOT_COHESION] || live->law[SLOT_DISSIPATION];
 }
 
+/* What records give stands side by side in mixed precision, where nothing else is read of it while steps are taken: no flow of heat, no force on a wall. */
+static const law *rotation_by_blocks(const live_laws *live)
+{
+    if (!live->law[SLOT_PRECISION] || live->law[SLOT_CONDUCTION] || live->servo)
+        return live->law[SLOT_ROTATION];
+    return live->law[SLOT_ROLLING] || live->law[SLOT_BOND] ? &law_rotation_wrenches_moment : &law_rotation_wrenches;
+}
+
 void live_for_blocks(live_laws *all)
 {
+    if (all->blocks && all->law[SLOT_ROTATION])
+        all->law[SLOT_ROTATION] = rotation_by_blocks(all);
     all->law[SLOT_PACKED] = all->blocks && all->law[SLOT_PRECISION] ? &law_packed_grains : NULL;
     all->law[SLOT_TOUCHED] = all->blocks && !acts_apart(all) ? &law_touched_marks : NULL;
 }
@@ -259,6 +269,17 @@ bool live_changes_stiffness(const live_laws *live)
     return !live->frozen && live->law[SLOT_NORMAL] && (live->law[SLOT_MODULUS] || live->law[SLOT_RADIUS]);
 }
 
+static const char *rows_file(const live_laws *live)
+{
+    return live->law[SLOT_PACKED] ? "stage/rows_packed.cl" : "stage/rows_gathered.cl";
+}
+
+static const char *wrenches_file(const live_laws *live)
+{
+    const law *rotation = live->law[SLOT_ROTATION];
+    return rotation && rotation != &law_rotation_spin ? "stage/wrenches_together.cl" : "stage/wrenches_apart.cl";
+}
+
 int live_files(const live_laws *live, const char **files, int max)
 {
     static const char *const stages[] = {"stage/contact.cl", "stage/pair.cl", "stage/particle.cl", NULL, "stage/observe.cl"};
@@ -271,8 +292,8 @@ int live_files(const live_laws *live, const char **files, int max)
             files[count++] = l->more_files[f];
     }
     for (size_t s = 0; s < sizeof stages / sizeof *stages; s++) {
-        for (int f = 0; !stages[s] && live->blocks && f < 3 && count < max; f++)
-            files[count++] = f == 0 ? "stage/team.cl" : f == 1 ? "stage/rows.cl" : live->law[SLOT_PACKED] ? "stage/rows_packed.cl" : "stage/rows_gathered.cl";
+        for (int f = 0; !stages[s] && live->blocks && f < 4 && count < max; f++)
+            files[count++] = f == 0 ? "stage/team.cl" : f == 1 ? "stage/rows.cl" : f == 2 ? rows_file(live) : wrenches_file(live);
         if (count < max)
             files[count++] = stages[s] ? stages[s] : live->blocks ? "stage/by_blocks.cl" : "stage/by_items.cl";
     }

@@ -269,7 +269,7 @@ static status count_records(simulation *sim, const clast_launch *launch, failure
 static status fit_records(simulation *sim, failure *why)
 {
     contact_table *t = &sim->table;
-    int64_t need = t->record_count;
+    int64_t need = t->record_count + 1; /* one that is nobody's (kernels/stage/wrenches_together.cl) */
     if (need <= t->record_capacity && t->record_capacity > 0)
         return STATUS_OK;
     int64_t capacity = round_up((int64_t)((double)need * RESERVE) + sim->block, sim->block);

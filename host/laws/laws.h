@@ -6,7 +6,7 @@
 extern const law law_hertz, law_linear, law_mindlin, law_coulomb_linear, law_elastic_plastic, law_constant_torque, law_local_damping,
     law_viscous_damping, law_power, law_adhesion, law_parallel, law_sintering, law_jkr, law_dmt, law_sjkr;
 extern const law law_bonding_always, law_bonding_at_time, law_bonding_scalar, law_bonding_temperature;
-extern const law law_precision_mixed, law_composition_several, law_dimensions_two, law_packed_grains, law_touched_marks, law_periodic_box, law_motion_groups, law_rotation_spin, law_slip_single, law_slip_two,
+extern const law law_precision_mixed, law_composition_several, law_dimensions_two, law_packed_grains, law_touched_marks, law_periodic_box, law_motion_groups, law_rotation_spin, law_rotation_wrenches, law_rotation_wrenches_moment, law_slip_single, law_slip_two,
     law_walls_planes, law_walls_finite, law_walls_round, law_orientation_quaternion, law_semi_implicit_euler, law_velocity_verlet, law_velocity_verlet_spin,
     law_dissipation_tracked, law_dissipation_synchronous, law_ledger_energies, law_fraction, law_exponential_softening, law_softening_tracked;
 

@@ -1,7 +1,11 @@
 /* rotation: spin and torque, TM Eq. 1 with j = (2/5) m r^2. Reads and writes spin; a record's torque holds that on its owner, then that on
  * the other body. */
 #define ROTATION_PAIR_FIELDS(READ, WRITE) READ(exact, spin) WRITE(real, torque)
+#ifdef WRENCH_NUMBERS /* the particle stage keeps one of them at 0 (stage/wrenches_together.cl) */
+#define ROTATION_PARTICLE_FIELDS(READ, WRITE) WRITE(exact, spin) WRITE(real, torque)
+#else
 #define ROTATION_PARTICLE_FIELDS(READ, WRITE) WRITE(exact, spin) READ(real, torque)
+#endif
 #define ROTATION_OBSERVE_FIELDS(READ, WRITE) READ(exact, spin)
 #define ROTATION_LIMIT_FIELDS(READ, WRITE) READ(real, torque)
 #define ROTATION_LOAD(launch, i) GRAIN_AXIAL3(spin, i)

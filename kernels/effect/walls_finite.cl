@@ -2,7 +2,7 @@
  * corner counts only where no other face is nearer at that point, and once where several faces share it: the smallest index has it.
  * So a record takes a loop over faces, and is taken by itself (stage/by_blocks.cl). */
 #define WALLS_LOOP
-#define PAIR_OF_WALLS pair_of_wall
+#define PAIR_OF_WALLS pair_of_face
 INLINE precise walls_clamp(precise x, precise limit)
 {
     if (precise_less(limit, x))

@@ -1,6 +1,6 @@
 /* walls: none. */
 #define WALLS_LOOP
-#define PAIR_OF_WALLS pair_of_wall
+#define PAIR_OF_WALLS pair_of_face
 #define WALLS_PAIR_FIELDS(READ, WRITE)
 #define WALLS_NEAR(launch, face, x, r) false
 #define WALLS_CONTACT(launch, face, x, v, c, touch) (void)(x), walls_none(touch)

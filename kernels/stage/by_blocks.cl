@@ -10,10 +10,6 @@
 #define RECORDS_AHEAD 2
 /* Work-groups of records of beds that do not fit the caches next to a core: only there does asking pay. */
 #define BLOCKS_TO_ASK 128
-/* A lot: records that go through the laws together. In a loose bed most that stand in the table do not touch, and where none of a lot does, none needs
- * to (PAIRS_ACT_APART: some law acts on two apart, or sums over steps; host/live.c). */
-#define LOT (LANES < 4 ? 4 : LANES)
-#define LOTS (CLAST_BLOCK / LOT)
 
 /* ---- records ---- */
 
@@ -29,14 +25,14 @@ INLINE void sphere_of_rows(const real *rows, int lane, sphere *s)
     s->temperature = TEMPERATURE_OF_ROWS(rows, ROW_TEMPERATURE, lane);
 }
 
-INLINE void pair_of_rows(const clast_launch *launch, const real *owners, const real *others, int lane, int k PAIR_DECLARE)
+INLINE void pair_of_rows(const clast_launch *launch, const real *owners, const real *others, int lane, int k WRENCH_DECLARE PAIR_DECLARE)
 {
     sphere s_i, s_j;
     contact c;
     sphere_of_rows(owners, lane, &s_i);
     sphere_of_rows(others, lane, &s_j);
     contact_of_spheres(launch, owner[k], other[k], &s_i, &s_j, true, &c PAIR_PASS);
-    PAIR_FROM_CONTACT(PAIR_STORE_STATE);
+    PAIR_FROM_CONTACT(PAIR_STORE_STATE, WRENCH_PUT);
 }
 
 /* Of one whose rows hold nothing but its place. */
@@ -50,14 +46,14 @@ INLINE void stranger_of_rows(const real *rows, int lane, sphere *s)
 }
 
 /* The same where the two do not touch and no law acts on them: of the laws nothing is left but that forces and histories are 0. */
-INLINE void pair_of_strangers(const clast_launch *launch, const real *owners, const real *others, int lane, int k PAIR_DECLARE)
+INLINE void pair_of_strangers(const clast_launch *launch, const real *owners, const real *others, int lane, int k WRENCH_DECLARE PAIR_DECLARE)
 {
     sphere s_i, s_j;
     contact c;
     stranger_of_rows(owners, lane, &s_i);
     stranger_of_rows(others, lane, &s_j);
     contact_of_spheres(launch, owner[k], other[k], &s_i, &s_j, false, &c PAIR_PASS);
-    PAIR_FROM_CONTACT(PAIR_STORE_STATE);
+    PAIR_FROM_CONTACT(PAIR_STORE_STATE, WRENCH_PUT);
 }
 
 /* Whether the two of a record may touch: surely so where they do. Two at one place do not (stage/contact.cl); those of padding are one grain. */
@@ -102,11 +98,6 @@ INLINE ulong8 widest(ulong8 x)
     return x + (ulong8)(1);
 }
 
-/* What is to be done with a lot. */
-#define LOT_OF_PAIRS     1 /* two of it may touch, or nobody is to look: only then are the rest of its rows filled */
-#define LOT_OF_STRANGERS 2
-#define LOT_QUIET        3 /* strangers still, whose zeros stand there */
-#define LOT_BIT(lot)     (1u << ((lot) % 32)) /* blocks of more lots have none that are quiet */
 INLINE void pair_fill_lots(const clast_launch *launch, int group, int k, real *owners, real *others, int *kind PAIR_DECLARE)
 {
     int near[CLAST_BLOCK];
@@ -146,6 +137,7 @@ INLINE void pair_fill_lots(const clast_launch *launch, int group, int k, real *o
 INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
 {
     real owners[ROWS_OF_GRAIN * CLAST_BLOCK], others[ROWS_OF_GRAIN * CLAST_BLOCK];
+    WRENCH_ROWS;
     int k = (int)(widest((ulong8)((ulong)(CLAST_BLOCK * group))).s0 - 1), kind[LOTS];
     bool all = PAIRS_ACT_APART || !launch->loose;
     rows_fill_places(owner + k, all, owners PAIR_PASS);
@@ -161,36 +153,44 @@ INLINE void pair_block(const clast_launch *launch, int group PAIR_DECLARE)
         if (all || kind[lot] == LOT_OF_PAIRS) {
             VECTOR_LOOP
             for (int lane = LOT * lot; lane < LOT * end; lane++)
-                pair_of_rows(launch, owners, others, lane, k + lane PAIR_PASS);
+                pair_of_rows(launch, owners, others, lane, k + lane WRENCH_PASS PAIR_PASS);
         } else if (kind[lot] == LOT_OF_STRANGERS) {
             VECTOR_LOOP
             for (int lane = LOT * lot; lane < LOT * end; lane++)
-                pair_of_strangers(launch, owners, others, lane, k + lane PAIR_PASS);
+                pair_of_strangers(launch, owners, others, lane, k + lane WRENCH_PASS PAIR_PASS);
         }
     }
+    WRENCHES_STORE(k - launch->force_shift, all ? NULL : kind);
 }
 
+#define WALL_DECLARE , int lane WRENCH_DECLARE
 /* Of a wall without borders, whose contact takes no loop: as vector code. */
-PAIR_OF_WALL(INLINE, pair_of_plane, PAIR_STORE_STATE)
+PAIR_OF_WALL(INLINE, pair_of_plane, PAIR_STORE_STATE, WRENCH_PUT, WALL_DECLARE)
+/* Of any other. */
+PAIR_OF_WALL(OUTLINE, pair_of_face, PAIR_STORE_STATE, WRENCH_PUT, WALL_DECLARE)
 
 /* In a loose bed: the lots in which nobody touches a wall are left alone once their zeros stand there. */
 INLINE void pair_wall_lots(const clast_launch *launch, int group PAIR_DECLARE)
 {
     uint was_quiet = TOUCHED_QUIET(launch, group), quiet = 0;
+    int kind[LOTS];
+    WRENCH_ROWS;
     for (int lot = 0; lot < LOTS; lot++) {
-        int first = CLAST_BLOCK * group + LOT * lot, some = 0;
-        for (int k = first; k < first + LOT; k++)
+        int first = CLAST_BLOCK * group, some = 0;
+        for (int k = first + LOT * lot; k < first + LOT * (lot + 1); k++)
             if (WALLS_NEAR(launch, other[k], PRECISE_GRAIN_POLAR3(position, owner[k]), GRAIN_RADIUS(owner[k]))) {
                 TOUCHED_MARK(owner[k]);
                 some = 1;
             }
-        if (some || !(was_quiet & LOT_BIT(lot))) {
+        kind[lot] = some || !(was_quiet & LOT_BIT(lot)) ? LOT_OF_PAIRS : LOT_QUIET;
+        if (kind[lot] == LOT_OF_PAIRS) {
             WALLS_LOOP
-            for (int k = first; k < first + LOT; k++)
-                PAIR_OF_WALLS(launch, k PAIR_PASS);
+            for (int lane = LOT * lot; lane < LOT * (lot + 1); lane++)
+                PAIR_OF_WALLS(launch, first + lane, lane WRENCH_PASS PAIR_PASS);
         }
         quiet |= some ? 0 : LOT_BIT(lot);
     }
+    WRENCHES_STORE(CLAST_BLOCK * group - launch->force_shift, kind);
     TOUCHED_SET_QUIET(group, quiet);
 }
 
@@ -205,9 +205,11 @@ INLINE void pair_wall_block(const clast_launch *launch, int group PAIR_DECLARE)
         pair_wall_lots(launch, group PAIR_PASS);
         return;
     }
+    WRENCH_ROWS;
     WALLS_LOOP
     for (int lane = 0; lane < CLAST_BLOCK; lane++)
-        PAIR_OF_WALLS(launch, CLAST_BLOCK * group + lane PAIR_PASS);
+        PAIR_OF_WALLS(launch, CLAST_BLOCK * group + lane, lane WRENCH_PASS PAIR_PASS);
+    WRENCHES_STORE(CLAST_BLOCK * group - launch->force_shift, NULL);
 }
 
 /* Work-groups of records from..to of those that start at the launch's first; walls' are given a copy, so that the other is nobody else's. */
@@ -249,18 +251,6 @@ __kernel void pair_stage(const clast_launch launch, __global const clast_control
 
 /* ---- grains ---- */
 
-#define ROW_FORCE 0
-#define ROW_TORQUE 3
-#define ROW_HEAT (ROW_TORQUE + ROTATION_ROWS)
-#define ROW_PLACE (ROW_HEAT + CONDUCTION_ROWS)
-#define ROW_BUILT (ROW_PLACE + 3 * EXACT_REALS)
-#define ROW_TRAVEL (ROW_BUILT + 3 * EXACT_REALS)
-#define ROW_TURNING (ROW_TRAVEL + 3 * EXACT_REALS)
-#define ROW_KEPT (ROW_TURNING + ROTATION_ROWS * EXACT_REALS)
-#define ROWS_OF_MOTION (ROW_KEPT + INTEGRATOR_ROWS * EXACT_REALS)
-/* Grains of a work-item: half a block, so that small beds have work for several threads. */
-#define PARTICLE_LANES (CLAST_BLOCK / 2)
-
 INLINE void moving_fill(int4 i, real *to PARTICLE_DECLARE)
 {
     rows_exact_polar3(position, i, ROW(to, ROW_PLACE));
@@ -300,15 +290,7 @@ INLINE void particle_block(const clast_launch *launch, __global clast_control *c
     for (int lane = 0; lane < PARTICLE_LANES; lane += 4)
         moving_fill((int4)(first + lane, first + lane + 1, first + lane + 2, first + lane + 3), rows + lane PARTICLE_PASS);
     slots_ask_ahead(launch, first + 2 * PARTICLE_LANES PARTICLE_PASS);
-    for (int lane = 0; lane < PARTICLE_LANES; lane++) {
-        vec3 f = v3(R(0.0), R(0.0), R(0.0)), t = f;
-        grain_heat h = {0};
-        if (TOUCHED_TAKE(launch, first + lane))
-            particle_gather(launch, first / CLAST_BLOCK, first % CLAST_BLOCK + lane, &f, &t, &h PARTICLE_PASS);
-        ROW_SET_POLAR3(rows, ROW_FORCE, lane, f);
-        ROTATION_TO_ROWS(rows, ROW_TORQUE, lane, t);
-        CONDUCTION_TO_ROWS(rows, ROW_HEAT, lane, h);
-    }
+    grains_gather(launch, first, rows PARTICLE_PASS);
     VECTOR_LOOP
     for (int lane = 0; lane < PARTICLE_LANES; lane++) {
         grain_heat h;
@@ -335,6 +317,16 @@ __kernel void particle_stage(const clast_launch launch, __global clast_control *
     int at = get_global_id(0);
     if (control->halt_step > launch.step)
         particle_blocks(&launch, control, at, at + 1 PARTICLE_PASS);
+}
+
+/* Before steps: what is kept of grains a second time, as they are now (rows_packed.cl). */
+__kernel void particle_pack(const int blocks PARTICLE_DECLARE)
+{
+    int block = get_global_id(0);
+    if (block == 0)
+        WRENCH_OF_NOBODY;
+    if (block < blocks)
+        grains_pack(CLAST_BLOCK * block, CLAST_BLOCK PARTICLE_PASS);
 }
 
 /* ---- pieces of a step for a team (team.cl) ---- */

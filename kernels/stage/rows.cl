@@ -24,6 +24,29 @@
         ROW_NUMBER(rows, (n) + 2, lane) = (v).z;              \
     } while (0)
 
+/* A lot: records that go through the laws together. In a loose bed most that stand in the table do not touch, and where none of a lot does, none needs
+ * to (PAIRS_ACT_APART: some law acts on two apart, or sums over steps; host/live.c). */
+#define LOT (LANES < 4 ? 4 : LANES)
+#define LOTS (CLAST_BLOCK / LOT)
+/* What is to be done with a lot. */
+#define LOT_OF_PAIRS     1 /* two of it may touch, or nobody is to look: only then are the rest of its rows filled */
+#define LOT_OF_STRANGERS 2
+#define LOT_QUIET        3 /* strangers still, whose zeros stand there */
+#define LOT_BIT(lot)     (1u << ((lot) % 32)) /* blocks of more lots have none that are quiet */
+
+/* Rows of grains that move: what acts on them, and what moves of them with all its bits. */
+#define ROW_FORCE 0
+#define ROW_TORQUE 3
+#define ROW_HEAT (ROW_TORQUE + ROTATION_ROWS)
+#define ROW_PLACE (ROW_HEAT + CONDUCTION_ROWS)
+#define ROW_BUILT (ROW_PLACE + 3 * EXACT_REALS)
+#define ROW_TRAVEL (ROW_BUILT + 3 * EXACT_REALS)
+#define ROW_TURNING (ROW_TRAVEL + 3 * EXACT_REALS)
+#define ROW_KEPT (ROW_TURNING + ROTATION_ROWS * EXACT_REALS)
+#define ROWS_OF_MOTION (ROW_KEPT + INTEGRATOR_ROWS * EXACT_REALS)
+/* Grains of a work-item: half a block, so that small beds have work for several threads. */
+#define PARTICLE_LANES (CLAST_BLOCK / 2)
+
 /* x, y and z of four grains, from three of the four numbers that are loaded of each; the fourth is the next grain's (arrays have room behind
  * the last). Bits only: a stored number has 64 in either precision. */
 INLINE void rows_turn(__global const exact *field, int4 i, ulong4 *x, ulong4 *y, ulong4 *z)

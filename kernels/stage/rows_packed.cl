@@ -27,11 +27,9 @@ INLINE void grain_ask_for(size_t i PAIR_DECLARE)
     (float16)((a).s2, (b).s2, (a).s3, (b).s3, (a).s6, (b).s6, (a).s7, (b).s7, (a).sa, (b).sa, (a).sb, (b).sb, (a).se, (b).se, (a).sf, (b).sf)
 #define TWOS_LOW(a, b) (float16)((a).s01, (b).s01, (a).s45, (b).s45, (a).s89, (b).s89, (a).scd, (b).scd)
 #define TWOS_HIGH(a, b) (float16)((a).s23, (b).s23, (a).s67, (b).s67, (a).sab, (b).sab, (a).sef, (b).sef)
-/* Four packets: number 4 q + n of each, in quarter q of the nth result. Four times two halves: the first one's in quarters 0 and 1. */
-#define FOUR_PACKETS(n0, n1, n2, n3, PACKET_OF, at)                                                                \
-    float16 n0, n1, n2, n3;                                                                                        \
+/* Four vectors whose quarters are turned each for itself: number n of the same quarter of a to d, in that quarter of the nth result. */
+#define QUARTERS_TURNED(n0, n1, n2, n3, a, b, c, d)                                                                \
     do {                                                                                                           \
-        float16 a = PACKET_OF(at), b = PACKET_OF((at) + 1), c = PACKET_OF((at) + 2), d = PACKET_OF((at) + 3);      \
         float16 ab = PAIRS_LOW(a, b), cd = PAIRS_LOW(c, d);                                                        \
         n0 = TWOS_LOW(ab, cd);                                                                                     \
         n1 = TWOS_HIGH(ab, cd);                                                                                    \
@@ -39,6 +37,13 @@ INLINE void grain_ask_for(size_t i PAIR_DECLARE)
         cd = PAIRS_HIGH(c, d);                                                                                     \
         n2 = TWOS_LOW(ab, cd);                                                                                     \
         n3 = TWOS_HIGH(ab, cd);                                                                                    \
+    } while (0)
+/* Four packets: number 4 q + n of each, in quarter q of the nth result. Four times two halves: the first one's in quarters 0 and 1. */
+#define FOUR_PACKETS(n0, n1, n2, n3, PACKET_OF, at)                                                                \
+    float16 n0, n1, n2, n3;                                                                                        \
+    do {                                                                                                           \
+        float16 a = PACKET_OF(at), b = PACKET_OF((at) + 1), c = PACKET_OF((at) + 2), d = PACKET_OF((at) + 3);      \
+        QUARTERS_TURNED(n0, n1, n2, n3, a, b, c, d);                                                               \
     } while (0)
 #define WHOLE_PACKET(at) vload16((size_t)which[at], packed)
 /* The same half of two packets. */
@@ -116,11 +121,4 @@ INLINE void grains_pack(int first, int count PARTICLE_DECLARE)
         vstore8((float8)(place.s0123, place.s45, size), 2 * (size_t)i, packed);
         vstore8((float8)(mass[i], v.x, v.y, v.z, w.x, w.y, w.z, TEMPERATURE_OF_GRAIN(i)), 2 * (size_t)i + 1, packed);
     }
-}
-
-__kernel void particle_pack(const int blocks PARTICLE_DECLARE)
-{
-    int block = get_global_id(0);
-    if (block < blocks)
-        grains_pack(CLAST_BLOCK * block, CLAST_BLOCK PARTICLE_PASS);
 }

@@ -7,7 +7,7 @@
 
 /* ---- beds ---- */
 
-typedef enum variant { IN_A_BOX, MOVING_WALL, PERIODIC, SHEARED, EXPANDING, HEATED, VARIANTS } variant;
+typedef enum variant { IN_A_BOX, MOVING_WALL, PERIODIC, SHEARED, EXPANDING, HEATED, SLIDING, DISCS, VARIANTS } variant;
 
 #define COMMON                                                                                                               \
     "gravity_m_s2: [4, 2, -40]\n"                                                                                            \
@@ -71,6 +71,28 @@ static const char *const scenes[VARIANTS] = {
     "stages: [{name: go, until: {steps: 1}, step_s: 1.0e-5}]\n" GRAINS
     "output: {observables: [heat_walls]}\n"
     "walls: [{name: box, shape: box, low_m: [0, 0, 0.002], high_m: [0.014, 0.014, 0.03], open: [z_high], temperature_k: 500}]\n",
+    /* without moments: in mixed precision what records give is kept in another form than with (kernels/stage/wrenches_together.cl) */
+    [SLIDING] = "gravity_m_s2: [4, 2, -40]\n"
+    "effects: [{slot: normal, law: hertz}, {slot: tangential, law: mindlin}]\n"
+    "materials:\n"
+    "  - {name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3}\n"
+    "  - {name: lead, density_kg_m3: 9000, youngs_modulus_pa: 4.0e6, poissons_ratio: 0.4}\n"
+    "interactions: [{between: default, restitution: 0.5, friction_static: 0.4, friction_dynamic: 0.3}]\n"
+    "stages: [{name: go, until: {steps: 1}, step_s: 1.0e-5}]\n" GRAINS
+    "walls: [{name: box, shape: box, low_m: [0, 0, 0.002], high_m: [0.014, 0.014, 0.03], open: [z_high]}]\n",
+    [DISCS] = "dimensions: 2\n"
+    "gravity_m_s2: [4, -40, 0]\n"
+    "effects: [{slot: normal, law: hertz}, {slot: tangential, law: mindlin}, {slot: rolling, law: elastic_plastic}]\n"
+    "materials: [{name: glass, density_kg_m3: 2500, youngs_modulus_pa: 5.0e6, poissons_ratio: 0.3}]\n"
+    "interactions: [{between: default, restitution: 0.5, friction_static: 0.4, friction_dynamic: 0.3, rolling_friction: 0.02}]\n"
+    "stages: [{name: go, until: {steps: 1}, step_s: 1.0e-5}]\n"
+    "particles:\n"
+    "  - {name: layer, material: glass, generator: lattice, lattice: triangular, counts: [30, 1, 8], spacing_m: 2.02e-3, radius_m: {distribution: uniform, low: 9.0e-4, high: 1.0e-3},"
+    " origin_m: [0.0012, 0.0012, 0], velocity_m_s: [0.3, -1, 0]}\n"
+    "walls:\n"
+    "  - {name: west, shape: plane, point_m: [0, 0, 0], normal: [1, 0, 0]}\n"
+    "  - {name: east, shape: plane, point_m: [0.064, 0, 0], normal: [-1, 0, 0]}\n"
+    "  - {name: floor, shape: plane, point_m: [0, 0, 0], normal: [0, 1, 0]}\n",
 };
 
 /* ---- runs ---- */
@@ -216,6 +238,25 @@ static void test_in_mid_slip(void **state)
         assert_true(c.sim->rebuilds > 5 && c.sim->rebuilds < STEPS / 5);
         case_close(&c);
     }
+}
+
+/* The forms that keep what records give in ways of their own. */
+static void test_forms(void **state)
+{
+    variant v = (variant)(intptr_t)*state;
+    const manner plain = {0};
+    dump reference = run_variant(v, &plain);
+    compare(v, &reference, (manner){.table = "kernel_form: items, step_form: two_kernels"}, "a grain or contact to a work-item");
+    compare(v, &reference, (manner){.table = "skin_m: 1.0e-3"}, "a thick skin, with which it is looked who touches");
+    if (case_device()->info.cpu) {
+        int lanes = case_device()->info.float_lanes;
+        case_device()->info.float_lanes = 4; /* several lots in sixteen records, quiet and not */
+        compare(v, &reference, (manner){.table = "skin_m: 1.0e-3"}, "a thick skin, registers of four");
+        case_device()->info.float_lanes = lanes;
+    }
+    compare(v, &reference, (manner){.table = "skin_m: 4.0e-5, step_form: team"}, "a thin skin, a team");
+    compare(v, &reference, (manner){.table = "chunk_records: 64, step_form: phases"}, "steps in chunks, whose forces share places");
+    free(reference.value);
 }
 
 static void test_bits(void **state)
@@ -509,6 +550,8 @@ int main(int argc, char **argv)
     const struct CMUnitTest again[] = {
         cmocka_unit_test_prestate(test_bits, (void *)MOVING_WALL),
         cmocka_unit_test_prestate(test_bits, (void *)HEATED),
+        cmocka_unit_test_prestate(test_forms, (void *)SLIDING),
+        cmocka_unit_test_prestate(test_forms, (void *)DISCS),
     };
     if (getenv("CLAST_TEST_SET"))
         return cmocka_run_group_tests(again, NULL, NULL);
@@ -521,6 +564,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_prestate(test_bits, (void *)SHEARED),
         cmocka_unit_test_prestate(test_bits, (void *)EXPANDING),
         cmocka_unit_test_prestate(test_bits, (void *)HEATED),
+        cmocka_unit_test_prestate(test_forms, (void *)DISCS),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_order_of_grains),
         cmocka_unit_test(test_origin),

@@ -128,7 +128,9 @@ static char *assemble(const live_laws *live)
 {
     const char *files[FILES_MAX];
     char constants[8192], *text = NULL;
-    live_constants(live, &plain, constants, sizeof constants);
+    live_laws packed = *live;
+    live_for_blocks(&packed);
+    live_constants(&packed, &plain, constants, sizeof constants);
     MUST(program_assemble(constants, files, files_of(live, files), NULL, &text, why));
     return text;
 }
@@ -268,11 +270,11 @@ static void test_no_file_forgotten(void **state)
     (void)state;
     for (const kernel_file *f = kernels_embedded; f->name; f++) {
         bool found = strcmp(f->name, "shared.h") == 0 || strcmp(f->name, "base.cl") == 0;
-        for (size_t n = 0; n <= LAWS + 1 && !found; n++) {
+        for (size_t n = 0; n <= LAWS + 2 && !found; n++) {
             const char *files[FILES_MAX];
-            live_laws live = n <= LAWS ? with(n < LAWS ? every_law[n] : NULL, NULL) : all_at_once(true, true);
-            live.servo = true;
-            live.blocks = n % 2 != 0;
+            live_laws live = n > LAWS + 1 ? all_at_once(true, true) : n > LAWS ? with(&law_precision_mixed, &law_mindlin) : with(n < LAWS ? every_law[n] : NULL, NULL);
+            live.servo = n <= LAWS;
+            live.blocks = n % 2 != 0 || n > LAWS;
             int count = files_of(&live, files);
             for (int k = 0; k < count; k++)
                 found = found || strcmp(files[k], f->name) == 0;
@@ -352,6 +354,10 @@ static void test_on_device(void **state)
         {&law_wall_temperature, &law_environment_profile},
         {&law_nusselt, &law_thermal_groups},
         {&law_hertz, &law_ledger_energies},
+        {&law_precision_mixed, &law_mindlin},
+        {&law_precision_mixed, &law_mindlin},
+        {&law_precision_mixed, &law_elastic_plastic},
+        {&law_precision_mixed, &law_elastic_plastic},
     };
     for (size_t n = 0; n < sizeof pairs / sizeof *pairs; n++) {
         live_laws live = with(pairs[n][0], pairs[n][1]);
