@@ -35,6 +35,7 @@ typedef struct planning {
         *release;   /* of every work-group of records: the chunk after which its forces have been gathered; then the same of every chunk */
     int32_t *place; /* of every chunk, in chunks */
     int places;
+    int32_t *block, *begin; /* blocks in the order in which they may go, and where those of every chunk begin; `chunks` has those after all streams */
 } planning;
 
 /* Records that a chunk is to have; 0: the stages go whole. */
@@ -184,13 +185,22 @@ static status choose_places(planning *p, failure *why)
 
 /* ---- the plan ---- */
 
+static void order_blocks(const planning *p)
+{
+    for (int b = 0; b < p->blocks; b++)
+        p->begin[p->last[b] + 2]++;
+    for (int c = 0; c <= p->chunks; c++)
+        p->begin[c + 2] += p->begin[c + 1];
+    for (int b = 0; b < p->blocks; b++)
+        p->block[p->begin[p->last[b] + 1]++] = b;
+}
+
 static status add_blocks(step_plan *plan, const planning *p, int chunk, failure *why)
 {
-    for (int b = 0; b < p->blocks; b++) {
-        int first = b;
-        while (b < p->blocks && p->last[b] == chunk)
-            b++;
-        TRY(add_piece(plan, false, first, b - first, 0, why));
+    for (int n = p->begin[chunk], end = n; n < p->begin[chunk + 1]; n = end) {
+        while (end < p->begin[chunk + 1] && p->block[end] == p->block[n] + end - n)
+            end++;
+        TRY(add_piece(plan, false, p->block[n], end - n, 0, why));
     }
     return STATUS_OK;
 }
@@ -201,6 +211,7 @@ static status add_pieces(simulation *sim, const planning *p, int wall_shift, fai
     step_plan *plan = &sim->plan;
     clast_phases *phases = &plan->phases;
     int wall_group = sim->table.wall_base / sim->block, end = sim->table.record_count / sim->block, per_chunk = p->chunk / sim->block;
+    order_blocks(p);
     TRY(add_piece(plan, true, wall_group, end - wall_group, wall_shift, why));
     add_shared_phase(plan, 0);
     for (int c = 0; c < p->chunks; c++) {
@@ -295,11 +306,15 @@ static status plan_streams(simulation *sim, planning *of, failure *why)
     p.last = calloc((size_t)p.blocks + 1, sizeof *p.last);
     p.release = calloc((size_t)sim->table.wall_base / sim->block + 1, sizeof *p.release);
     p.place = calloc((size_t)p.chunks, sizeof *p.place);
-    status result = p.first && p.last && p.release && p.place ? plan_chunks(sim, &p, why) : fail(why, STATUS_ERROR, "out of memory");
+    p.block = calloc((size_t)p.blocks + 1, sizeof *p.block);
+    p.begin = calloc((size_t)p.chunks + 3, sizeof *p.begin);
+    status result = p.first && p.last && p.release && p.place && p.block && p.begin ? plan_chunks(sim, &p, why) : fail(why, STATUS_ERROR, "out of memory");
     free(p.first);
     free(p.last);
     free(p.release);
     free(p.place);
+    free(p.block);
+    free(p.begin);
     return result;
 }
 
