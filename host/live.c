@@ -193,10 +193,11 @@ static bool acts_apart(const live_laws *live)
     return live->law[SLOT_BOND] || live->law[SLOT_COHESION] || live->law[SLOT_DISSIPATION];
 }
 
-/* What records give stands side by side in mixed precision, where nothing else is read of it while steps are taken: no flow of heat, no force on a wall. */
+/* What records give stands side by side in mixed precision, where nothing else is read of it while steps are taken: no flow of heat, no force on a wall; and
+ * in three dimensions, since in two there are but four numbers of it (docs/performance.md). */
 static const law *rotation_by_blocks(const live_laws *live)
 {
-    if (!live->law[SLOT_PRECISION] || live->law[SLOT_CONDUCTION] || live->servo)
+    if (!live->law[SLOT_PRECISION] || live->law[SLOT_DIMENSIONS] || live->law[SLOT_CONDUCTION] || live->servo)
         return live->law[SLOT_ROTATION];
     return live->law[SLOT_ROLLING] || live->law[SLOT_BOND] ? &law_rotation_wrenches_moment : &law_rotation_wrenches;
 }

@@ -1,4 +1,4 @@
-/* What records give their two bodies, in mixed precision: force and the owner's arm, then the lever n x f_t and the other body's arm; or, where some law
+/* What records give their two bodies, in mixed precision and three dimensions: force and the owner's arm, then the lever n x f_t and the other body's arm; or, where some law
  * gives moments (WRENCH_NUMBERS is 12, not 8), force, torque on the owner and torque on the other, with a number beside each that says nothing. So the sum over
  * a grain's slots reads a line of a cache a record instead of six, and takes a third of the operations, without a branch that nobody could foretell
  * (docs/performance.md). The pair stage makes rows, as many as numbers, and turns sixteen records of them at a time.
@@ -12,35 +12,21 @@
 #define WRENCHES_STORE(place, kind) wrenches_store(torque + WRENCH_NUMBERS * ((size_t)(place) + 1), wrenches, kind)
 #define WRENCH_OF_NOBODY wrench_clear(torque)
 
-/* Zeros too, where a scene of two dimensions has them. */
-#define ROW_SET_POLAR3_WHOLE(rows, n, lane, v)                        \
-    do {                                                              \
-        ROW_NUMBER(rows, n, lane) = (v).x;                            \
-        ROW_NUMBER(rows, (n) + 1, lane) = (v).y;                      \
-        ROW_NUMBER(rows, (n) + 2, lane) = SPACE_NUMBER((v).z);        \
-    } while (0)
-#define ROW_SET_AXIAL3_WHOLE(rows, n, lane, v)                        \
-    do {                                                              \
-        ROW_NUMBER(rows, n, lane) = SPACE_NUMBER((v).x);              \
-        ROW_NUMBER(rows, (n) + 1, lane) = SPACE_NUMBER((v).y);        \
-        ROW_NUMBER(rows, (n) + 2, lane) = (v).z;                      \
-    } while (0)
-
 #if WRENCH_NUMBERS == 8
 INLINE void wrench_to_rows(real *rows, int lane, vec3 force, vec3 lever, vec3 moment, real arm_i, real arm_j)
 {
-    ROW_SET_POLAR3_WHOLE(rows, 0, lane, force);
+    ROW_SET_POLAR3(rows, 0, lane, force);
     ROW_NUMBER(rows, 3, lane) = arm_i;
-    ROW_SET_AXIAL3_WHOLE(rows, 4, lane, lever);
+    ROW_SET_AXIAL3(rows, 4, lane, lever);
     ROW_NUMBER(rows, 7, lane) = arm_j;
 }
 #else
 INLINE void wrench_to_rows(real *rows, int lane, vec3 force, vec3 lever, vec3 moment, real arm_i, real arm_j)
 {
     vec3 on_owner = add_scaled(moment, arm_i, lever), on_other = add_scaled(scale(R(-1.0), moment), arm_j, lever);
-    ROW_SET_POLAR3_WHOLE(rows, 0, lane, force);
-    ROW_SET_AXIAL3_WHOLE(rows, 4, lane, on_owner);
-    ROW_SET_AXIAL3_WHOLE(rows, 8, lane, on_other);
+    ROW_SET_POLAR3(rows, 0, lane, force);
+    ROW_SET_AXIAL3(rows, 4, lane, on_owner);
+    ROW_SET_AXIAL3(rows, 8, lane, on_other);
 }
 #endif
 

@@ -550,6 +550,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest again[] = {
         cmocka_unit_test_prestate(test_bits, (void *)MOVING_WALL),
         cmocka_unit_test_prestate(test_bits, (void *)HEATED),
+        cmocka_unit_test_prestate(test_forms, (void *)IN_A_BOX),
         cmocka_unit_test_prestate(test_forms, (void *)SLIDING),
         cmocka_unit_test_prestate(test_forms, (void *)DISCS),
     };
