@@ -96,27 +96,13 @@ const law law_rotation_spin = {
 static const field field_torque_of_8 = {"torque", PER_RECORD, FIELD_REAL, 8, FIELD_RESULT, "N m", "force, lever of friction and arms of a record side by side; where they are asked for, torques as without"};
 static const field field_torque_of_12 = {"torque", PER_RECORD, FIELD_REAL, 12, FIELD_RESULT, "N m", "force and both torques of a record side by side; where they are asked for, torques as without"};
 
-static void wrench_of_8(const double *option, char *text, size_t size)
-{
-    (void)option;
-    size_t used = strlen(text);
-    snprintf(text + used, size - used, "#define WRENCH_NUMBERS 8\n");
-}
-
-static void wrench_of_12(const double *option, char *text, size_t size)
-{
-    (void)option;
-    size_t used = strlen(text);
-    snprintf(text + used, size - used, "#define WRENCH_NUMBERS 12\n");
-}
-
 const law law_rotation_wrenches = {
     .name = "spin",
     .slot = SLOT_ROTATION,
     .doc = "Spin and torque; what a record gives its two grains stands side by side.",
     .source = "TM Eq. 1",
-    .kernel_file = "effect/rotation_spin.cl",
-    .constants = wrench_of_8,
+    .kernel_file = "effect/wrench_of_8.cl",
+    .more_files = {"effect/rotation_spin.cl"},
     .pair_fields = {&field_spin, &field_torque_of_8},
     .particle_fields = {&field_spin, &field_torque_of_8},
 };
@@ -126,8 +112,8 @@ const law law_rotation_wrenches_moment = {
     .slot = SLOT_ROTATION,
     .doc = "Spin and torque; what a record gives its two grains, a moment too, stands side by side.",
     .source = "TM Eq. 1",
-    .kernel_file = "effect/rotation_spin.cl",
-    .constants = wrench_of_12,
+    .kernel_file = "effect/wrench_of_12.cl",
+    .more_files = {"effect/rotation_spin.cl"},
     .pair_fields = {&field_spin, &field_torque_of_12},
     .particle_fields = {&field_spin, &field_torque_of_12},
 };

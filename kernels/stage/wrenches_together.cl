@@ -1,6 +1,5 @@
-/* What records give their two bodies, in mixed precision and three dimensions: force and the owner's arm, then the lever n x f_t and the other body's arm; or, where some law
- * gives moments (WRENCH_NUMBERS is 12, not 8), force, torque on the owner and torque on the other, with a number beside each that says nothing. So the sum over
- * a grain's slots reads a line of a cache a record instead of six, and takes a third of the operations, without a branch that nobody could foretell
+/* What records give their two bodies, in mixed precision and three dimensions, side by side: in 8 numbers or 12 (effect/wrench_of_8.cl, wrench_of_12.cl). So the
+ * sum over a grain's slots reads a line of a cache a record instead of six, and takes a third of the operations, without a branch that nobody could foretell
  * (docs/performance.md). The pair stage makes rows, as many as numbers, and turns sixteen records of them at a time.
  *
  * The record at place p stands at p + 1 in the array of torques, which observers write as they would without, and steps write anew. The place before is
@@ -8,27 +7,8 @@
 #define WRENCH_DECLARE , real *wrenches
 #define WRENCH_PASS , wrenches
 #define WRENCH_ROWS real wrenches[WRENCH_NUMBERS * CLAST_BLOCK]
-#define WRENCH_PUT(on_other) wrench_to_rows(wrenches, lane, total, lever, out.rolling, c.arm_i, c.arm_j)
 #define WRENCHES_STORE(place, kind) wrenches_store(torque + WRENCH_NUMBERS * ((size_t)(place) + 1), wrenches, kind)
 #define WRENCH_OF_NOBODY wrench_clear(torque)
-
-#if WRENCH_NUMBERS == 8
-INLINE void wrench_to_rows(real *rows, int lane, vec3 force, vec3 lever, vec3 moment, real arm_i, real arm_j)
-{
-    ROW_SET_POLAR3(rows, 0, lane, force);
-    ROW_NUMBER(rows, 3, lane) = arm_i;
-    ROW_SET_AXIAL3(rows, 4, lane, lever);
-    ROW_NUMBER(rows, 7, lane) = arm_j;
-}
-#else
-INLINE void wrench_to_rows(real *rows, int lane, vec3 force, vec3 lever, vec3 moment, real arm_i, real arm_j)
-{
-    vec3 on_owner = add_scaled(moment, arm_i, lever), on_other = add_scaled(scale(R(-1.0), moment), arm_j, lever);
-    ROW_SET_POLAR3(rows, 0, lane, force);
-    ROW_SET_AXIAL3(rows, 4, lane, on_owner);
-    ROW_SET_AXIAL3(rows, 8, lane, on_other);
-}
-#endif
 
 INLINE void wrench_clear(__global real *to)
 {
@@ -36,34 +16,19 @@ INLINE void wrench_clear(__global real *to)
         to[n] = R(0.0);
 }
 
-/* The third row serves for the fourth where that says nothing. */
-#define FOURTH (WRENCH_NUMBERS == 8 ? 3 : 2)
 /* Four rows of sixteen records, so that number n of record 4 q + m stands at n in quarter q of the mth result. */
 #define FOUR_ROWS(m0, m1, m2, m3, n)                                                                                                 \
     float16 m0, m1, m2, m3;                                                                                                          \
     do {                                                                                                                             \
-        float16 a = vload16(0, ROW(from, n)), b = vload16(0, ROW(from, (n) + 1)), c = vload16(0, ROW(from, (n) + 2)), d = vload16(0, ROW(from, (n) + FOURTH)); \
+        float16 a = vload16(0, ROW(from, n)), b = vload16(0, ROW(from, (n) + 1)), c = vload16(0, ROW(from, (n) + 2)), d = vload16(0, ROW(from, (n) + WRENCH_FOURTH)); \
         QUARTERS_TURNED(m0, m1, m2, m3, a, b, c, d);                                                                                 \
     } while (0)
-/* Records 4 q to 4 q + 3, whose quarters are called `part`. */
-#if WRENCH_NUMBERS == 8
-#define WRENCHES_OF_QUARTER(q, part)                                                                                                 \
-    vstore16((float16)(f0.part, l0.part, f1.part, l1.part), 2 * (q), to);                                                            \
-    vstore16((float16)(f2.part, l2.part, f3.part, l3.part), 2 * (q) + 1, to)
-#else
-#define WRENCHES_OF_QUARTER(q, part)                                                                                                 \
-    vstore16((float16)(f0.part, l0.part, m0.part, f1.part), 3 * (q), to);                                                            \
-    vstore16((float16)(l1.part, m1.part, f2.part, l2.part), 3 * (q) + 1, to);                                                        \
-    vstore16((float16)(m2.part, f3.part, l3.part, m3.part), 3 * (q) + 2, to)
-#endif
-
 INLINE void wrenches_turn(__global real *to, const real *from)
 {
     FOUR_ROWS(f0, f1, f2, f3, 0);
-    FOUR_ROWS(l0, l1, l2, l3, 4);
-#if WRENCH_NUMBERS == 12
-    FOUR_ROWS(m0, m1, m2, m3, 8);
-#endif
+    FOUR_ROWS(t0, t1, t2, t3, 4);
+    WRENCH_LAST_ROWS;
+    /* records 4 q to 4 q + 3, whose quarters have that name */
     WRENCHES_OF_QUARTER(0, s0123);
     WRENCHES_OF_QUARTER(1, s4567);
     WRENCHES_OF_QUARTER(2, s89ab);
@@ -90,11 +55,7 @@ INLINE void wrenches_store(__global real *to, real *rows, const int *kind)
 INLINE float8 wrench_added(float8 sum, __global const real *wrench, float sign, __global const real *side)
 {
 #pragma OPENCL FP_CONTRACT OFF
-#if WRENCH_NUMBERS == 8
-    return sum + vload8(0, wrench) * (float8)((float4)(sign), (float4)(side[3]));
-#else
-    return sum + (float8)(vload4(0, wrench), vload4(1, side)) * (float8)((float4)(sign), (float4)(1.0f));
-#endif
+    return sum + WRENCH_SHARE(wrench, sign, side);
 }
 
 /* Force and torque of eight grains, whose slots stand side by side, into rows. */

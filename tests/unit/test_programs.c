@@ -270,9 +270,9 @@ static void test_no_file_forgotten(void **state)
     (void)state;
     for (const kernel_file *f = kernels_embedded; f->name; f++) {
         bool found = strcmp(f->name, "shared.h") == 0 || strcmp(f->name, "base.cl") == 0;
-        for (size_t n = 0; n <= LAWS + 2 && !found; n++) {
+        for (size_t n = 0; n <= LAWS + 3 && !found; n++) {
             const char *files[FILES_MAX];
-            live_laws live = n > LAWS + 1 ? all_at_once(true, true) : n > LAWS ? with(&law_precision_mixed, &law_mindlin) : with(n < LAWS ? every_law[n] : NULL, NULL);
+            live_laws live = n > LAWS + 2 ? all_at_once(true, true) : n > LAWS ? with(&law_precision_mixed, n > LAWS + 1 ? &law_elastic_plastic : &law_mindlin) : with(n < LAWS ? every_law[n] : NULL, NULL);
             live.servo = n <= LAWS;
             live.blocks = n % 2 != 0 || n > LAWS;
             int count = files_of(&live, files);
